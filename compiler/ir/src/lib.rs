@@ -1,0 +1,46 @@
+//! The intermediate representation of a scene: data, fully resolved.
+//!
+//! Units: metres, radians, nanometres, kelvin. Ids are indices into the tables of one [`Ir`] and stay stable
+//! within a pass. Invariants (checked by the verifier): children come before parents, so the node table is a
+//! topological order of an acyclic graph; every id is in range; every map is finite and invertible; sizes are
+//! finite and positive; only closed nodes are operands of Boolean nodes, but for what the pass `split_lights`
+//! has not yet taken out of unions.
+//! Provenance: each node keeps the span of the expression that made it.
+
+mod action;
+mod camera;
+mod light;
+mod material;
+mod node;
+
+pub use action::{Action, Exposure, Strategy};
+pub use camera::{Camera, Filter, Projection};
+pub use light::{Environment, Light};
+pub use material::{Attributes, Bsdf, CutRule, Emitter, Material, MaterialId};
+pub use node::{Leaf, Node, NodeId, NodeKind, Precedence, Surface};
+
+pub use arsc_geometry::{Aabb, Shape};
+pub use arsc_spectral::Spectrum;
+
+/// A scene with its camera and its action sequence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ir {
+    /// Children before parents.
+    pub nodes: Vec<Node>,
+    /// The whole scene: before optimisation a union of everything that the `scene` block collected.
+    pub root: NodeId,
+    /// What attributes and leaves refer to.
+    pub bsdfs: Vec<Bsdf>,
+    pub emitters: Vec<Emitter>,
+    /// Filled by the pass that propagates attributes to leaves.
+    pub materials: Vec<Material>,
+    pub camera: Option<Camera>,
+    pub actions: Vec<ActionAt>,
+}
+
+/// An action and where it was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ActionAt {
+    pub action: Action,
+    pub origin: arsc_diagnostics::Span,
+}

@@ -1,0 +1,56 @@
+//! Attributes: what a surface does with light.
+
+use arsc_spectral::Spectrum;
+
+/// Index into [`crate::Ir::materials`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MaterialId(pub u32);
+
+/// Scattering at a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Bsdf {
+    Lambert { reflectance: Spectrum },
+    /// `sigma` is the standard deviation of the facet slope angle, radians.
+    OrenNayar { reflectance: Spectrum, sigma: f64 },
+    /// Ideal mirror with the given reflectance at every angle.
+    Mirror { reflectance: Spectrum },
+    /// Smooth interface between vacuum outside and this index inside.
+    Dielectric { ior: Spectrum },
+    /// Smooth metal, complex index `eta + i k`.
+    Conductor { eta: Spectrum, k: Spectrum },
+}
+
+/// Emission of a surface towards the side of its normal (solids: outwards), Lambertian.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Emitter {
+    /// W m^-2 sr^-1 nm^-1.
+    pub radiance: Spectrum,
+    /// Surfaces only: both sides emit.
+    pub two_sided: bool,
+}
+
+/// How the wall that a subtraction leaves is covered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CutRule {
+    /// By this bsdf of [`crate::Ir::bsdfs`].
+    Bsdf(u32),
+    /// By the material of the solid that was cut.
+    Inherit,
+}
+
+/// A bundle as `with(…)` attaches it; indices into the tables of [`crate::Ir`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Attributes {
+    pub bsdf: Option<u32>,
+    pub emitter: Option<u32>,
+    /// For walls cut into the subtree by a subtraction outside of it.
+    pub cut: Option<CutRule>,
+}
+
+/// What a leaf ends up with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// `None`: the default, Lambert of reflectance 0.5.
+    pub bsdf: Option<u32>,
+    pub emitter: Option<u32>,
+}

@@ -1,0 +1,91 @@
+//! What a scene is made of, before it is built.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec2, DVec3};
+
+use arsc_geometry::Shape;
+
+/// The caller's number for a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MaterialIndex(pub u32);
+
+/// How solids are traced. All give the same picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Strategy {
+    /// Cells with simplified expressions as Embree user primitives.
+    #[default]
+    Local,
+    /// One Embree user primitive per solid; every leaf intersected, the whole tree evaluated. The oracle.
+    Tree,
+}
+
+/// A Boolean tree; leaves index [`Solid::leaves`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Csg {
+    Leaf(u32),
+    Union(Vec<Csg>),
+    Intersection(Vec<Csg>),
+    /// The first without the second.
+    Difference(Box<Csg>, Box<Csg>),
+}
+
+/// A shape in its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CsgLeaf {
+    pub shape: Shape,
+    pub world_from_object: DAffine3,
+    pub material: MaterialIndex,
+}
+
+/// A closed solid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    pub tree: Csg,
+    pub leaves: Vec<CsgLeaf>,
+}
+
+/// Indexed triangles; normals and uvs are empty or one per vertex.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleMesh {
+    pub positions: Vec<[f32; 3]>,
+    pub normals: Vec<[f32; 3]>,
+    pub uvs: Vec<[f32; 2]>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Open geometry in object space.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SurfaceShape {
+    Triangle([DVec3; 3]),
+    Quad([DVec3; 4]),
+    /// z = 0, centred, normal +z.
+    Rectangle { size: DVec2 },
+    /// z = 0, centred, normal +z.
+    Disk { radius: f64 },
+    /// z = 0, normal +z.
+    Plane,
+    Mesh(Arc<TriangleMesh>),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    pub shape: SurfaceShape,
+    pub world_from_object: DAffine3,
+    pub material: MaterialIndex,
+}
+
+/// A placed copy of a solid: the leaves' `world_from_object` are relative to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    pub solid: Arc<Solid>,
+    pub world_from_object: DAffine3,
+}
+
+/// Everything that can be hit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneGeometry {
+    pub solids: Vec<Solid>,
+    pub surfaces: Vec<Surface>,
+    pub instances: Vec<Instance>,
+}

@@ -1,0 +1,14 @@
+//! Scene geometry, traced.
+//!
+//! In goes a [`SceneGeometry`]: solids as Boolean trees over placed shapes, surfaces, instances. Out comes a
+//! [`Scene`] that answers: the nearest hit, occlusion, and all intervals along a ray. Positions and distances
+//! are double precision and carry error bounds; there is no fixed epsilon. Materials are opaque numbers here.
+
+mod geometry;
+mod hit;
+
+pub use arsc_geometry::{Aabb, Ray, Shape};
+pub use geometry::{
+    Csg, CsgLeaf, Instance, MaterialIndex, SceneGeometry, Solid, Strategy, Surface, SurfaceShape, TriangleMesh,
+};
+pub use hit::{Hit, Interval, PartId};
