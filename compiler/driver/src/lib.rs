@@ -7,29 +7,14 @@ pub use loader::{LoadError, Loader};
 use arsc_diagnostics::{Diagnostic, Severity, SourceMap};
 use arsc_ir::Ir;
 
-/// Ceilings on what a script may use. Exceeding one is a diagnostic.
+/// What a compilation is asked for.
 #[derive(Clone, Debug)]
-pub struct Limits {
-    /// Evaluation steps.
-    pub steps: u64,
-    /// Depth of function calls.
-    pub recursion: usize,
-    /// Nodes of the IR.
-    pub nodes: usize,
+pub struct Options {
+    pub sema: arsc_sema::Options,
     /// Depth of imports.
     pub include_depth: usize,
     /// Bytes of one source text.
     pub source_bytes: usize,
-    /// Elements of all lists and strings alive at once.
-    pub elements: usize,
-}
-
-/// What a compilation is asked for.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// `--set name=value`, in order.
-    pub params: Vec<(String, String)>,
-    pub limits: Limits,
     /// `--allow/--warn/--deny` by code or lint name; later wins.
     pub lint_levels: Vec<(String, Severity)>,
     pub optimise: bool,
@@ -42,4 +27,6 @@ pub struct Compiled {
     /// Sorted by source and position; lint levels and `allow` applied.
     pub diagnostics: Vec<Diagnostic>,
     pub sources: SourceMap,
+    /// What each optimiser pass did, in order.
+    pub passes: Vec<arsc_opt::PassReport>,
 }

@@ -1,0 +1,75 @@
+//! Names, types and evaluation: from syntax trees to the IR.
+//!
+//! Two stages: *check* resolves names and types of every module without running anything; *evaluate* runs the
+//! checked program under limits and collects the IR. Pure: text of data files arrives through [`Assets`].
+
+use std::sync::Arc;
+
+use arsc_diagnostics::{Diagnostic, SourceId};
+use arsc_ir::Ir;
+use arsc_syntax::ast;
+
+/// A parsed module whose imports have been found. Modules come dependencies first, the root script last.
+pub struct Module {
+    pub source: SourceId,
+    /// `std.material`, or the path of the file.
+    pub name: String,
+    pub is_std: bool,
+    pub ast: ast::Module,
+    /// For each import item of the tree, in order: the index of its module, `None` if it could not be loaded (reported).
+    pub imports: Vec<Option<usize>>,
+}
+
+/// Why a data file could not be had.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum AssetError {
+    NotFound,
+    NotText,
+    TooLarge,
+    Forbidden,
+    Other(String),
+}
+
+/// Data files named in scripts, relative to the module that names them.
+pub trait Assets {
+    /// The text of a small table (a spectrum).
+    fn text(&self, from: SourceId, path: &str) -> Result<Arc<str>, AssetError>;
+
+    /// Whether a large file (a mesh) is there; gives its path relative to the root script's folder.
+    fn probe(&self, from: SourceId, path: &str) -> Result<String, AssetError>;
+}
+
+/// Ceilings on what a script may use. Exceeding one is a diagnostic.
+#[derive(Clone, Debug)]
+pub struct Limits {
+    /// Evaluation steps.
+    pub steps: u64,
+    /// Depth of function calls.
+    pub recursion: usize,
+    /// Nodes of the IR.
+    pub nodes: usize,
+    /// Elements of all lists and strings made.
+    pub elements: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Limits {
+        Limits { steps: 500_000_000, recursion: 200, nodes: 20_000_000, elements: 100_000_000 }
+    }
+}
+
+/// What analysis is asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// `--set name=value`, in order; the value is an expression of the language.
+    pub params: Vec<(String, String)>,
+    pub limits: Limits,
+}
+
+/// What analysis gives.
+pub struct Analysed {
+    /// `None` when an error stopped it.
+    pub ir: Option<Ir>,
+    /// Errors and text lints; `allow` is not applied yet, but each lint's allowed regions are known to the driver.
+    pub diagnostics: Vec<Diagnostic>,
+}
