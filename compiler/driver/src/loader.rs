@@ -8,7 +8,9 @@ pub enum LoadError {
     NotFound,
     /// Not UTF-8; the offset of the first bad byte.
     NotText(usize),
-    TooLarge { bytes: u64 },
+    TooLarge {
+        bytes: u64,
+    },
     /// Outside of what may be read.
     Forbidden,
     Other(String),

@@ -20,19 +20,31 @@ pub enum Exposure {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// `scene → scene`: names the strategy for what follows.
-    Accelerate { strategy: Strategy },
+    Accelerate {
+        strategy: Strategy,
+    },
     /// `scene → scene`: prints the bounds of the scene and of its solids.
     BoundingBoxes,
     /// `scene → scene`: prints the light sources and their powers.
     CollectLights,
     /// `scene → scene image<spectral>`
-    PathTrace { samples: u32, max_depth: u32, seed: u64 },
+    PathTrace {
+        samples: u32,
+        max_depth: u32,
+        seed: u64,
+    },
     /// `image<spectral> → image<display>`
-    ToneMap { exposure: Exposure },
+    ToneMap {
+        exposure: Exposure,
+    },
     /// `image<spectral> → image<spectral>`
-    WriteExr { path: String },
+    WriteExr {
+        path: String,
+    },
     /// `image<display> → image<display>`
-    WritePng { path: String },
+    WritePng {
+        path: String,
+    },
     Dup,
     Swap,
     Drop,

@@ -9,15 +9,27 @@ pub struct MaterialId(pub u32);
 /// Scattering at a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Bsdf {
-    Lambert { reflectance: Spectrum },
+    Lambert {
+        reflectance: Spectrum,
+    },
     /// `sigma` is the standard deviation of the facet slope angle, radians.
-    OrenNayar { reflectance: Spectrum, sigma: f64 },
+    OrenNayar {
+        reflectance: Spectrum,
+        sigma: f64,
+    },
     /// Ideal mirror with the given reflectance at every angle.
-    Mirror { reflectance: Spectrum },
+    Mirror {
+        reflectance: Spectrum,
+    },
     /// Smooth interface between vacuum outside and this index inside.
-    Dielectric { ior: Spectrum },
+    Dielectric {
+        ior: Spectrum,
+    },
     /// Smooth metal, complex index `eta + i k`.
-    Conductor { eta: Spectrum, k: Spectrum },
+    Conductor {
+        eta: Spectrum,
+        k: Spectrum,
+    },
 }
 
 /// Emission of a surface towards the side of its normal (solids: outwards), Lambertian.

@@ -36,8 +36,15 @@ pub enum NodeKind {
     Difference(Vec<NodeId>),
     /// Parts side by side with no Boolean between them: each is traced as if alone.
     Group(Vec<NodeId>),
-    Transform { parent_from_child: Box<DAffine3>, child: NodeId },
-    Attributes { attributes: Attributes, precedence: Precedence, child: NodeId },
+    Transform {
+        parent_from_child: Box<DAffine3>,
+        child: NodeId,
+    },
+    Attributes {
+        attributes: Attributes,
+        precedence: Precedence,
+        child: NodeId,
+    },
     /// In the frame of its ancestors' transforms.
     Light(Box<Light>),
     Environment(Box<Environment>),

@@ -49,7 +49,10 @@ pub enum ItemKind {
     Let(Let),
     Fn(FnDecl),
     /// `type wheel = { radius: float, width: float }`
-    Type { name: Ident, ty: TypeExpr },
+    Type {
+        name: Ident,
+        ty: TypeExpr,
+    },
     /// `scene { … }`
     Scene(Block),
     /// `camera perspective(…)`
@@ -131,11 +134,17 @@ pub struct TypeExpr {
 #[derive(Clone, Debug)]
 pub enum TypeKind {
     /// `int`, `solid`, `list<solid>`, `image<spectral>`
-    Name { name: Ident, args: Vec<TypeExpr> },
+    Name {
+        name: Ident,
+        args: Vec<TypeExpr>,
+    },
     Tuple(Vec<TypeExpr>),
     Record(Vec<(Ident, TypeExpr)>),
     /// `fn(int, float) -> solid`
-    Fn { params: Vec<TypeExpr>, result: Box<TypeExpr> },
+    Fn {
+        params: Vec<TypeExpr>,
+        result: Box<TypeExpr>,
+    },
     Error,
 }
 
@@ -175,7 +184,10 @@ pub enum ExprKind {
     Int(i64),
     Float(f64),
     /// `180deg`, `0.5rad`, `550nm`, `6500K`
-    Quantity { value: f64, unit: Unit },
+    Quantity {
+        value: f64,
+        unit: Unit,
+    },
     Str(String),
     Name(Ident),
     /// `( )` is the empty tuple; `(a)` is no tuple but [`ExprKind::Paren`].
@@ -185,22 +197,60 @@ pub enum ExprKind {
     /// `{ radius: 1, width: 2 }`
     Record(Vec<(Ident, Expr)>),
     /// `module.name` or `record.field`
-    Field { base: Box<Expr>, name: Ident },
-    Index { base: Box<Expr>, index: Box<Expr> },
+    Field {
+        base: Box<Expr>,
+        name: Ident,
+    },
+    Index {
+        base: Box<Expr>,
+        index: Box<Expr>,
+    },
     Call(Call),
     /// `value |> call(args)`: the value becomes the first positional argument. The right side is a call or a name.
-    Pipe { value: Box<Expr>, call: Box<Expr> },
-    Unary { op: UnaryOp, op_span: Span, operand: Box<Expr> },
-    Binary { op: BinaryOp, op_span: Span, left: Box<Expr>, right: Box<Expr> },
+    Pipe {
+        value: Box<Expr>,
+        call: Box<Expr>,
+    },
+    Unary {
+        op: UnaryOp,
+        op_span: Span,
+        operand: Box<Expr>,
+    },
+    Binary {
+        op: BinaryOp,
+        op_span: Span,
+        left: Box<Expr>,
+        right: Box<Expr>,
+    },
     /// `a..b`, `a..=b`
-    Range { start: Box<Expr>, end: Box<Expr>, inclusive: bool },
-    If { condition: Box<Expr>, then: Block, otherwise: Option<Box<Expr>> },
-    Match { subject: Box<Expr>, arms: Vec<MatchArm> },
+    Range {
+        start: Box<Expr>,
+        end: Box<Expr>,
+        inclusive: bool,
+    },
+    If {
+        condition: Box<Expr>,
+        then: Block,
+        otherwise: Option<Box<Expr>>,
+    },
+    Match {
+        subject: Box<Expr>,
+        arms: Vec<MatchArm>,
+    },
     /// `for pattern in list if filter { body }`: a list of the bodies' values.
-    For { pattern: Pattern, list: Box<Expr>, filter: Option<Box<Expr>>, body: Block },
+    For {
+        pattern: Pattern,
+        list: Box<Expr>,
+        filter: Option<Box<Expr>>,
+        body: Block,
+    },
     Block(Block),
     /// `fn(x: float, y) => expr` or `fn(x) -> float { … }`
-    Lambda { params: Vec<FnParam>, result: Option<TypeExpr>, body: Box<Expr> },
+    Lambda {
+        params: Vec<FnParam>,
+        result: Option<TypeExpr>,
+        body: Box<Expr>,
+    },
     /// Could not be read; reported.
     Error,
 }
@@ -238,7 +288,11 @@ pub enum PatternKind {
     /// A literal, possibly negated.
     Literal(Box<Expr>),
     /// `0..10`, `0..=10` of literals.
-    Range { start: Box<Expr>, end: Box<Expr>, inclusive: bool },
+    Range {
+        start: Box<Expr>,
+        end: Box<Expr>,
+        inclusive: bool,
+    },
     Tuple(Vec<Pattern>),
     /// `a | b`
     Either(Vec<Pattern>),

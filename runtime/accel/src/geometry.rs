@@ -60,9 +60,13 @@ pub enum SurfaceShape {
     Triangle([DVec3; 3]),
     Quad([DVec3; 4]),
     /// z = 0, centred, normal +z.
-    Rectangle { size: DVec2 },
+    Rectangle {
+        size: DVec2,
+    },
     /// z = 0, centred, normal +z.
-    Disk { radius: f64 },
+    Disk {
+        radius: f64,
+    },
     /// z = 0, normal +z.
     Plane,
     Mesh(Arc<TriangleMesh>),

@@ -7,17 +7,38 @@ use std::sync::Arc;
 pub enum Spectrum {
     Constant(f64),
     /// Linear between knots, constant beyond the ends. `lambda_nm` strictly increases; both of one length >= 1.
-    Tabulated { lambda_nm: Arc<[f64]>, values: Arc<[f64]> },
+    Tabulated {
+        lambda_nm: Arc<[f64]>,
+        values: Arc<[f64]>,
+    },
     /// Planck's law, spectral radiance in W m^-2 sr^-1 nm^-1.
-    Blackbody { kelvin: f64 },
-    Gaussian { center_nm: f64, sigma_nm: f64, peak: f64 },
+    Blackbody {
+        kelvin: f64,
+    },
+    Gaussian {
+        center_nm: f64,
+        sigma_nm: f64,
+        peak: f64,
+    },
     /// Refractive index: n^2 = 1 + sum b_i L^2 / (L^2 - c_i), L in micrometres, c_i in square micrometres.
-    Sellmeier { b: [f64; 3], c_um2: [f64; 3] },
+    Sellmeier {
+        b: [f64; 3],
+        c_um2: [f64; 3],
+    },
     /// Refractive index: n = a + b / L^2 + c / L^4, L in micrometres.
-    Cauchy { a: f64, b_um2: f64, c_um4: f64 },
+    Cauchy {
+        a: f64,
+        b_um2: f64,
+        c_um4: f64,
+    },
     /// s(c0 L^2 + c1 L + c2) with s(x) = 1/2 + x / (2 sqrt(1 + x^2)), L in nanometres (Jakob and Hanika 2019).
-    Sigmoid { coefficients: [f64; 3] },
-    Scaled { factor: f64, spectrum: Arc<Spectrum> },
+    Sigmoid {
+        coefficients: [f64; 3],
+    },
+    Scaled {
+        factor: f64,
+        spectrum: Arc<Spectrum>,
+    },
     Product(Arc<Spectrum>, Arc<Spectrum>),
     Sum(Arc<Spectrum>, Arc<Spectrum>),
 }
