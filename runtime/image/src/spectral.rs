@@ -1,5 +1,7 @@
 //! Spectral images.
 
+use crate::ImageError;
+
 /// Radiance per band with CIE XYZ beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpectralImage {
@@ -13,4 +15,32 @@ pub struct SpectralImage {
     pub xyz: Vec<[f32; 3]>,
     /// Free text that travels with the picture: version, scene hash, seed, samples, command line, timings.
     pub metadata: Vec<(String, String)>,
+}
+
+impl SpectralImage {
+    pub fn bands(&self) -> usize {
+        self.band_edges_nm.len().saturating_sub(1)
+    }
+
+    /// Centre of a band, nm.
+    pub fn band_center_nm(&self, band: usize) -> f64 {
+        0.5 * (self.band_edges_nm[band] + self.band_edges_nm[band + 1])
+    }
+
+    /// That there is at least a pixel and a band, that edges increase, and that the buffers have the stated size.
+    pub fn verify(&self) -> Result<(), ImageError> {
+        let pixels = self.width.checked_mul(self.height).unwrap_or(0);
+        if pixels == 0 || self.bands() == 0 {
+            return Err(ImageError::Shape { what: "the image", found: 0, expected: 1 });
+        }
+        if !self.band_edges_nm.windows(2).all(|edge| edge[0] < edge[1]) {
+            return Err(ImageError::NotSpectral("band edges do not increase".into()));
+        }
+        check("radiance", self.radiance.len(), pixels.saturating_mul(self.bands()))?;
+        check("xyz", self.xyz.len(), pixels)
+    }
+}
+
+fn check(what: &'static str, found: usize, expected: usize) -> Result<(), ImageError> {
+    if found == expected { Ok(()) } else { Err(ImageError::Shape { what, found, expected }) }
 }

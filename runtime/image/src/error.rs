@@ -1,0 +1,19 @@
+//! What can go wrong with image files.
+
+use std::path::PathBuf;
+
+/// An operational error; the cause is chained as its source.
+#[derive(Debug, thiserror::Error)]
+pub enum ImageError {
+    #[error("cannot write {}", path.display())]
+    Write { path: PathBuf, source: std::io::Error },
+    #[error("cannot encode the image as {format}")]
+    Encode { format: &'static str, source: Box<dyn std::error::Error + Send + Sync> },
+    #[error("cannot decode the {format} image")]
+    Decode { format: &'static str, source: Box<dyn std::error::Error + Send + Sync> },
+    /// The buffers do not fit the stated size, or the image has no pixel.
+    #[error("{what} holds {found} values where {expected} are due")]
+    Shape { what: &'static str, found: usize, expected: usize },
+    #[error("not a spectral image: {0}")]
+    NotSpectral(String),
+}

@@ -1,0 +1,180 @@
+//! Reading spectral OpenEXR files.
+//!
+//! Understands what [`crate::encode_exr`] writes and, of the layout by Fichet, Pacanowski and Wilkie, unpolarised
+//! emissive images (`S0.<λ>nm`) of other writers: without `arsc:bandEdges` the edges are the midpoints between
+//! neighbouring wavelengths, as the layout prescribes; without `XYZ.*` the image is refused.
+
+use exr::prelude::*;
+
+use crate::{ImageError, SpectralImage};
+
+/// ZIP shrinks at most by about this factor: a file that claims more pixels than that is not believed.
+const LARGEST_COMPRESSION: u64 = 1100;
+
+/// An image from the bytes of a file.
+///
+/// Errors: [`ImageError::Decode`] for what is no OpenEXR file or claims more pixels than its bytes can hold,
+/// [`ImageError::NotSpectral`] for what lacks the spectral channels.
+pub fn decode_exr(bytes: &[u8]) -> std::result::Result<SpectralImage, ImageError> {
+    let failed = |source: Box<dyn std::error::Error + Send + Sync>| ImageError::Decode { format: "OpenEXR", source };
+    check_claimed_size(bytes).map_err(failed)?;
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(std::io::Cursor::new(bytes))
+        .map_err(|error| failed(Box::new(error)))?;
+    from_layer(&image.layer_data)
+}
+
+fn check_claimed_size(bytes: &[u8]) -> std::result::Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    let meta = MetaData::read_from_buffered(std::io::Cursor::new(bytes), false)?;
+    let limit = (bytes.len() as u64).saturating_mul(LARGEST_COMPRESSION);
+    for header in &meta.headers {
+        let size = header.layer_size;
+        let samples = (size.0 as u64).saturating_mul(size.1 as u64).saturating_mul(header.channels.list.len() as u64);
+        if samples > limit {
+            return Err("the header claims more pixels than the file can hold".into());
+        }
+    }
+    Ok(())
+}
+
+fn from_layer(layer: &Layer<AnyChannels<FlatSamples>>) -> std::result::Result<SpectralImage, ImageError> {
+    let (width, height) = (layer.size.0, layer.size.1);
+    let named = |name: &str| layer.channel_data.list.iter().find(|channel| channel.name.eq(name));
+    let mut bands: Vec<(f64, &AnyChannel<FlatSamples>)> =
+        layer.channel_data.list.iter().filter_map(|c| Some((wavelength_nm(&c.name.to_string())?, c))).collect();
+    bands.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if bands.is_empty() {
+        return Err(ImageError::NotSpectral("no channel is named S0.<wavelength>nm".into()));
+    }
+    let [Some(x), Some(y), Some(z)] = ["XYZ.X", "XYZ.Y", "XYZ.Z"].map(named) else {
+        return Err(ImageError::NotSpectral("the XYZ channels are missing".into()));
+    };
+    let mut radiance = vec![0.0; width * height * bands.len()];
+    for (band, (_, channel)) in bands.iter().enumerate() {
+        for (pixel, value) in channel.sample_data.values_as_f32().enumerate() {
+            radiance[pixel * bands.len() + band] = value;
+        }
+    }
+    let xyz = x.sample_data.values_as_f32().zip(y.sample_data.values_as_f32()).zip(z.sample_data.values_as_f32());
+    let centers: Vec<f64> = bands.iter().map(|band| band.0).collect();
+    let (metadata, edges) = metadata(&layer.attributes);
+    let image = SpectralImage {
+        width,
+        height,
+        band_edges_nm: edges.filter(|e| e.len() == centers.len() + 1).unwrap_or_else(|| midpoints(&centers)),
+        radiance,
+        xyz: xyz.map(|((x, y), z)| [x, y, z]).collect(),
+        metadata,
+    };
+    image.verify()?;
+    Ok(image)
+}
+
+/// The wavelength of `S0.550,000000nm`.
+fn wavelength_nm(channel: &str) -> Option<f64> {
+    let number = channel.strip_prefix("S0.")?.strip_suffix("nm")?;
+    let value: f64 = number.replace(',', ".").parse().ok()?;
+    (value.is_finite() && value > 0.0).then_some(value)
+}
+
+/// Edges half-way between neighbours; the outermost bands are symmetric about their centres.
+fn midpoints(centers: &[f64]) -> Vec<f64> {
+    let (first, last) = (centers[0], centers[centers.len() - 1]);
+    let half = |pair: Option<(f64, f64)>| pair.map_or(0.5, |(a, b)| 0.5 * (b - a));
+    let at = |i: usize| Some((*centers.get(i)?, *centers.get(i + 1)?));
+    std::iter::once(first - half(at(0)))
+        .chain(centers.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])))
+        .chain(std::iter::once(last + half(centers.len().checked_sub(2).and_then(at))))
+        .collect()
+}
+
+type Metadata = Vec<(String, String)>;
+
+/// The `arsc:` attributes sorted by name, with the band edges taken out.
+fn metadata(attributes: &LayerAttributes) -> (Metadata, Option<Vec<f64>>) {
+    let mut texts: Metadata = Vec::new();
+    for (name, value) in &attributes.other {
+        let name = String::from_utf8_lossy(name.as_slice());
+        if let (Some(name), AttributeValue::Text(text)) = (name.strip_prefix("arsc:"), value) {
+            texts.push((name.to_owned(), String::from_utf8_lossy(text.as_slice()).into_owned()));
+        }
+    }
+    texts.sort();
+    let edges = texts
+        .iter()
+        .find(|(name, _)| name == "bandEdges")
+        .and_then(|(_, text)| text.split(';').map(|edge| edge.parse::<f64>().ok()).collect::<Option<Vec<f64>>>());
+    texts.retain(|(name, _)| name != "bandEdges" && name != "radianceUnits");
+    (texts, edges)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::encode_exr;
+
+    fn image() -> SpectralImage {
+        let (width, height, bands) = (37, 21, 47);
+        SpectralImage {
+            width,
+            height,
+            band_edges_nm: (0..=bands).map(|i| 360.0 + 10.0 * i as f64).collect(),
+            radiance: (0..width * height * bands).map(|i| (i as f32 * 0.37).sin().abs() * 1e-3).collect(),
+            xyz: (0..width * height).map(|i| [i as f32, i as f32 * 0.5, 1.0]).collect(),
+            metadata: vec![
+                ("command".into(), "arsc render Würfel.arsl".into()),
+                ("seed".into(), "7".into()),
+                ("version".into(), "0.1.0".into()),
+            ],
+        }
+    }
+
+    #[test]
+    fn reads_back_what_was_written_and_bytes_are_reproducible() {
+        let image = image();
+        let bytes = encode_exr(&image).unwrap();
+        for _ in 0..3 {
+            assert_eq!(bytes, encode_exr(&image).unwrap(), "same image, same bytes");
+        }
+        assert_eq!(decode_exr(&bytes).unwrap(), image);
+    }
+
+    #[test]
+    fn garbage_and_cut_files_are_errors() {
+        let bytes = encode_exr(&image()).unwrap();
+        assert!(matches!(decode_exr(b"not an image"), Err(ImageError::Decode { .. })));
+        for cut in [0, 4, 9, 100, bytes.len() / 2] {
+            assert!(decode_exr(&bytes[..cut]).is_err(), "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn a_claim_of_too_many_pixels_is_refused_without_allocating_them() {
+        let mut bytes = encode_exr(&image()).unwrap();
+        // Windows are boxes of four i32 behind the attribute's name, type and size.
+        for name in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
+            let at = bytes.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 4;
+            bytes[at + 8..at + 12].copy_from_slice(&999_999i32.to_le_bytes());
+            bytes[at + 12..at + 16].copy_from_slice(&999_999i32.to_le_bytes());
+        }
+        assert!(matches!(decode_exr(&bytes), Err(ImageError::Decode { .. })));
+    }
+
+    #[test]
+    fn edges_default_to_midpoints() {
+        assert_eq!(midpoints(&[400.0, 410.0, 430.0]), vec![395.0, 405.0, 420.0, 440.0]);
+        assert_eq!(midpoints(&[500.0]), vec![499.5, 500.5]);
+    }
+
+    #[test]
+    fn buffers_of_the_wrong_size_are_errors() {
+        let mut image = image();
+        image.radiance.pop();
+        assert!(matches!(encode_exr(&image), Err(ImageError::Shape { what: "radiance", .. })));
+    }
+}

@@ -1,0 +1,85 @@
+//! Spectral OpenEXR files in the layout of Fichet, Pacanowski and Wilkie, "An OpenEXR Layout for Spectral Images",
+//! JCGT 10(3), 2021.
+//!
+//! Channels, all 32 bit: `S0.<centre>nm` per band with a decimal comma and six decimals; `R`, `G`, `B`, linear sRGB in
+//! which the relative luminance 1 is [`UNIT_LUMINANCE`] cd m^-2 (also the attribute `whiteLuminance`); `XYZ.X`,
+//! `XYZ.Y`, `XYZ.Z` with Y in cd m^-2. Attributes: `spectralLayoutVersion` "1.0", `emissiveUnits` "W.m^-2.sr^-1" (the
+//! one value that the layout's readers know; the samples are densities, W m^-2 sr^-1 nm^-1, which
+//! `arsc:radianceUnits` says), `arsc:bandEdges`, and the image's metadata as `arsc:<name>`.
+//! ZIP in blocks of 16 lines, lines in increasing order, attributes sorted by name.
+
+use exr::prelude::*;
+
+use crate::{ImageError, SpectralImage, UNIT_LUMINANCE, exr_header, linear_srgb_from_xyz};
+
+/// The bytes of a spectral OpenEXR file.
+pub fn encode_exr(image: &SpectralImage) -> std::result::Result<Vec<u8>, ImageError> {
+    image.verify()?;
+    let failed = |source: Box<dyn std::error::Error + Send + Sync>| ImageError::Encode { format: "OpenEXR", source };
+    let size = Vec2(image.width, image.height);
+    let encoding =
+        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let layer = Layer::new(size, attributes(image), encoding, AnyChannels::sort(channels(image).into()));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|error| failed(Box::new(error)))?;
+    let mut bytes = bytes.into_inner();
+    exr_header::sort_attributes(&mut bytes).ok_or_else(|| failed("the header cannot be sorted".into()))?;
+    Ok(bytes)
+}
+
+fn channels(image: &SpectralImage) -> Vec<AnyChannel<FlatSamples>> {
+    let bands = image.bands();
+    let channel = |name: &str, samples: Vec<f32>| AnyChannel::new(name, FlatSamples::F32(samples));
+    let mut channels: Vec<_> = (0..bands)
+        .map(|band| {
+            let samples = image.radiance.iter().skip(band).step_by(bands).copied().collect();
+            channel(&band_name(image.band_center_nm(band)), samples)
+        })
+        .collect();
+    let rgb: Vec<[f64; 3]> =
+        image.xyz.iter().map(|xyz| linear_srgb_from_xyz(xyz.map(|v| f64::from(v) / UNIT_LUMINANCE))).collect();
+    for (i, name) in ["R", "G", "B"].into_iter().enumerate() {
+        channels.push(channel(name, rgb.iter().map(|p| p[i] as f32).collect()));
+    }
+    for (i, name) in ["XYZ.X", "XYZ.Y", "XYZ.Z"].into_iter().enumerate() {
+        channels.push(channel(name, image.xyz.iter().map(|p| p[i]).collect()));
+    }
+    channels
+}
+
+/// `S0.550,000000nm`
+fn band_name(center_nm: f64) -> String {
+    format!("S0.{}nm", format!("{center_nm:.6}").replace('.', ","))
+}
+
+fn attributes(image: &SpectralImage) -> LayerAttributes {
+    let mut attributes = LayerAttributes { white_luminance: Some(UNIT_LUMINANCE as f32), ..LayerAttributes::default() };
+    let mut text = |name: &str, value: &str| {
+        attributes.other.insert(utf8(name), AttributeValue::Text(utf8(value)));
+    };
+    text("spectralLayoutVersion", "1.0");
+    text("emissiveUnits", "W.m^-2.sr^-1");
+    text("arsc:radianceUnits", "W.m^-2.sr^-1.nm^-1");
+    let edges: Vec<String> = image.band_edges_nm.iter().map(f64::to_string).collect();
+    text("arsc:bandEdges", &edges.join(";"));
+    for (name, value) in &image.metadata {
+        text(&format!("arsc:{name}"), value);
+    }
+    attributes
+}
+
+/// OpenEXR strings are bytes; they hold UTF-8 here.
+fn utf8(text: &str) -> Text {
+    Text::from_slice_unchecked(text.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn band_names_have_a_comma_and_six_decimals() {
+        assert_eq!(band_name(550.0), "S0.550,000000nm");
+        assert_eq!(band_name(365.25), "S0.365,250000nm");
+    }
+}
