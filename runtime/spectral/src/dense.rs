@@ -1,0 +1,127 @@
+//! Spectra tabulated for the inner loop.
+//!
+//! Knots every nanometre from 360 to 830 nm; the value between knots is that of the nearest one. Single precision.
+
+use glam::Vec4;
+
+use crate::observer::KNOTS;
+use crate::{LAMBDA_MIN_NM, SampledSpectrum, SampledWavelengths, Spectrum};
+
+/// A spectrum as the renderer holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DenseSpectrum {
+    Constant(f32),
+    Table(Box<[f32; KNOTS]>),
+}
+
+impl DenseSpectrum {
+    /// Tabulates. A value that is not finite becomes zero.
+    pub fn new(spectrum: &Spectrum) -> DenseSpectrum {
+        DenseSpectrum::from_fn(|lambda_nm| spectrum.eval(lambda_nm))
+    }
+
+    /// Tabulates a function of wavelength. A value that is not finite becomes zero.
+    pub fn from_fn(value_at: impl Fn(f64) -> f64) -> DenseSpectrum {
+        let mut table = Box::new([0.0; KNOTS]);
+        for (i, entry) in table.iter_mut().enumerate() {
+            let value = value_at(LAMBDA_MIN_NM + i as f64) as f32;
+            *entry = if value.is_finite() { value } else { 0.0 };
+        }
+        if table.iter().all(|value| *value == table[0]) {
+            DenseSpectrum::Constant(table[0])
+        } else {
+            DenseSpectrum::Table(table)
+        }
+    }
+
+    /// Every value limited to `[low, high]`.
+    pub fn clamped(mut self, low: f32, high: f32) -> DenseSpectrum {
+        match &mut self {
+            DenseSpectrum::Constant(value) => *value = value.clamp(low, high),
+            DenseSpectrum::Table(table) => table.iter_mut().for_each(|value| *value = value.clamp(low, high)),
+        }
+        self
+    }
+
+    /// Values at the sampled wavelengths.
+    #[inline]
+    pub fn sample(&self, wavelengths: &SampledWavelengths) -> SampledSpectrum {
+        match self {
+            DenseSpectrum::Constant(value) => SampledSpectrum(Vec4::splat(*value)),
+            DenseSpectrum::Table(table) => {
+                let [a, b, c, d] = wavelengths.knots;
+                SampledSpectrum(Vec4::new(table[a as usize], table[b as usize], table[c as usize], table[d as usize]))
+            }
+        }
+    }
+
+    /// The value at the knot nearest to a wavelength of the rendered range.
+    pub fn at(&self, lambda_nm: f64) -> f32 {
+        match self {
+            DenseSpectrum::Constant(value) => *value,
+            DenseSpectrum::Table(table) => table[nearest_knot(lambda_nm as f32) as usize],
+        }
+    }
+
+    pub fn is_constant(&self) -> bool {
+        matches!(self, DenseSpectrum::Constant(_))
+    }
+
+    /// Largest value.
+    pub fn max(&self) -> f32 {
+        match self {
+            DenseSpectrum::Constant(value) => *value,
+            DenseSpectrum::Table(table) => table.iter().copied().fold(f32::NEG_INFINITY, f32::max),
+        }
+    }
+
+    /// Integral over the rendered range, in the spectrum's unit times nm.
+    pub fn integral(&self) -> f64 {
+        match self {
+            DenseSpectrum::Constant(value) => f64::from(*value) * (KNOTS - 1) as f64,
+            DenseSpectrum::Table(table) => {
+                let ends = 0.5 * (f64::from(table[0]) + f64::from(table[KNOTS - 1]));
+                table.iter().map(|value| f64::from(*value)).sum::<f64>() - ends
+            }
+        }
+    }
+}
+
+/// Index of the nearest knot; wavelengths outside of the range take the end knots.
+#[inline]
+pub(crate) fn nearest_knot(lambda_nm: f32) -> u32 {
+    ((lambda_nm - (LAMBDA_MIN_NM as f32 - 0.5)) as u32).min(KNOTS as u32 - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_agree_with_their_spectrum_at_the_knots() {
+        let spectrum = Spectrum::Blackbody { kelvin: 4000.0 };
+        let dense = DenseSpectrum::new(&spectrum);
+        for lambda in [360.0, 361.0, 555.0, 829.0, 830.0] {
+            let exact = spectrum.eval(lambda) as f32;
+            assert_eq!(dense.at(lambda), exact);
+            assert_eq!(dense.at(lambda + 0.4), exact);
+            assert_eq!(dense.at(lambda - 0.4), exact);
+        }
+    }
+
+    #[test]
+    fn constants_are_recognised_and_poles_removed() {
+        let half = Spectrum::Scaled { factor: 0.5, spectrum: std::sync::Arc::new(Spectrum::Constant(1.0)) };
+        assert_eq!(DenseSpectrum::new(&half), DenseSpectrum::Constant(0.5));
+        let bad = DenseSpectrum::from_fn(|lambda| if lambda == 500.0 { f64::NAN } else { lambda });
+        assert_eq!(bad.at(500.0), 0.0);
+        assert_eq!(bad.at(501.0), 501.0);
+    }
+
+    #[test]
+    fn integral_of_a_linear_spectrum_is_exact() {
+        let line = DenseSpectrum::from_fn(|lambda| lambda - 360.0);
+        assert!((line.integral() - 470.0 * 235.0).abs() < 1e-3);
+        assert_eq!(DenseSpectrum::Constant(2.0).integral(), 940.0);
+    }
+}
