@@ -1,1 +1,39 @@
-fn main() {}
+//! The `arsc` command: arguments, reporting, exit codes. No logic.
+//!
+//! Each subcommand is a module with an `Args` and a `run`. All files are reached through [`files`]; the compiler and the
+//! renderer see traits. Work happens on a thread with a large stack, because compiler and CSG trees recurse; a panic
+//! there is a bug of arsc, reported by [`bug`].
+
+mod args;
+mod bug;
+mod exit;
+mod files;
+mod interrupt;
+mod progress;
+
+use clap::{Parser, Subcommand};
+
+use exit::Exit;
+
+/// Stack of the working thread, bytes.
+const STACK: usize = 512 << 20;
+
+#[derive(Parser)]
+#[command(name = "arsc", version, about = "Compiles and renders .arsl scene scripts", after_help = exit::HELP)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {}
+
+fn main() -> std::process::ExitCode {
+    let cli = Cli::parse();
+    let exit = bug::guarded(STACK, move || run(cli));
+    exit.into()
+}
+
+fn run(cli: Cli) -> Exit {
+    match cli.command {}
+}
