@@ -8,12 +8,15 @@
 //! Provenance: each node keeps the span of the expression that made it.
 
 mod action;
+mod builder;
 mod camera;
+mod graph;
 mod light;
 mod material;
 mod node;
 
 pub use action::{Action, Exposure, Strategy};
+pub use builder::Builder;
 pub use camera::{Camera, Filter, Projection};
 pub use light::{Environment, Light};
 pub use material::{Attributes, Bsdf, CutRule, Emitter, Material, MaterialId};

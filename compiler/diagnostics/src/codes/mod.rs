@@ -1,7 +1,7 @@
 //! The registry of diagnostic codes: one table per stage, each code once.
 //!
 //! Numbers: `E00xx` syntax, `E01xx` names and types, `E02xx` values, limits and modules, `E03xx` action
-//! sequences, `E09xx` not implemented yet; `W01xx` lints of the text, `W02xx` lints of the geometry and light.
+//! sequences, `E04xx` the scene as a whole, `E09xx` not implemented yet; `W01xx` lints of the text, `W02xx` lints of the geometry and light.
 //! A lint's name is what `allow(…)`, `--deny` and `--warn` take.
 
 use std::fmt;

@@ -1,0 +1,112 @@
+//! Equal values get one index: bsdfs, emitters and materials.
+
+use std::hash::{Hash, Hasher};
+
+use arsc_ir::{Bsdf, Emitter, Material, Spectrum};
+use rustc_hash::{FxHashMap, FxHasher};
+
+/// A value whose floats are compared as numbers and hashed by their bits.
+pub(crate) trait Structural: PartialEq {
+    fn structural_hash(&self, hasher: &mut FxHasher);
+}
+
+/// A table without equal entries.
+#[derive(Default)]
+pub(crate) struct Interner<T> {
+    pub values: Vec<T>,
+    by_hash: FxHashMap<u64, Vec<u32>>,
+}
+
+impl<T: Structural> Interner<T> {
+    pub fn new() -> Interner<T> {
+        Interner { values: Vec::new(), by_hash: FxHashMap::default() }
+    }
+
+    pub fn intern(&mut self, value: T) -> u32 {
+        let mut hasher = FxHasher::default();
+        value.structural_hash(&mut hasher);
+        let bucket = self.by_hash.entry(hasher.finish()).or_default();
+        if let Some(&index) = bucket.iter().find(|&&index| self.values[index as usize] == value) {
+            return index;
+        }
+        let index = self.values.len() as u32;
+        bucket.push(index);
+        self.values.push(value);
+        index
+    }
+}
+
+/// Adding zero makes -0 and 0, which compare equal, hash alike.
+pub(crate) fn hash_f64(value: f64, hasher: &mut FxHasher) {
+    (value + 0.0).to_bits().hash(hasher);
+}
+
+fn hash_all(values: &[f64], hasher: &mut FxHasher) {
+    values.len().hash(hasher);
+    for &value in values {
+        hash_f64(value, hasher);
+    }
+}
+
+/// A few samples tell tables apart well enough; equality is checked on the whole.
+fn hash_samples(values: &[f64], hasher: &mut FxHasher) {
+    values.len().hash(hasher);
+    for &value in values.iter().step_by(values.len() / 8 + 1) {
+        hash_f64(value, hasher);
+    }
+}
+
+impl Structural for Spectrum {
+    fn structural_hash(&self, hasher: &mut FxHasher) {
+        std::mem::discriminant(self).hash(hasher);
+        match self {
+            Spectrum::Constant(value) => hash_f64(*value, hasher),
+            Spectrum::Tabulated { lambda_nm, values } => {
+                hash_samples(lambda_nm, hasher);
+                hash_samples(values, hasher);
+            }
+            Spectrum::Blackbody { kelvin } => hash_f64(*kelvin, hasher),
+            Spectrum::Gaussian { center_nm, sigma_nm, peak } => hash_all(&[*center_nm, *sigma_nm, *peak], hasher),
+            Spectrum::Sellmeier { b, c_um2 } => {
+                hash_all(b, hasher);
+                hash_all(c_um2, hasher);
+            }
+            Spectrum::Cauchy { a, b_um2, c_um4 } => hash_all(&[*a, *b_um2, *c_um4], hasher),
+            Spectrum::Sigmoid { coefficients } => hash_all(coefficients, hasher),
+            // One level is enough: the rest is compared.
+            Spectrum::Scaled { factor, .. } => hash_f64(*factor, hasher),
+            Spectrum::Product(..) | Spectrum::Sum(..) => {}
+        }
+    }
+}
+
+impl Structural for Bsdf {
+    fn structural_hash(&self, hasher: &mut FxHasher) {
+        std::mem::discriminant(self).hash(hasher);
+        match self {
+            Bsdf::Lambert { reflectance } | Bsdf::Mirror { reflectance } => reflectance.structural_hash(hasher),
+            Bsdf::OrenNayar { reflectance, sigma } => {
+                reflectance.structural_hash(hasher);
+                hash_f64(*sigma, hasher);
+            }
+            Bsdf::Dielectric { ior } => ior.structural_hash(hasher),
+            Bsdf::Conductor { eta, k } => {
+                eta.structural_hash(hasher);
+                k.structural_hash(hasher);
+            }
+        }
+    }
+}
+
+impl Structural for Emitter {
+    fn structural_hash(&self, hasher: &mut FxHasher) {
+        self.radiance.structural_hash(hasher);
+        self.two_sided.hash(hasher);
+    }
+}
+
+impl Structural for Material {
+    fn structural_hash(&self, hasher: &mut FxHasher) {
+        (self.bsdf, self.emitter).hash(hasher);
+    }
+}

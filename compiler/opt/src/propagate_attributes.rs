@@ -1,0 +1,418 @@
+//! Moves attributes to the leaves, resolves cut rules, and interns materials.
+//!
+//! For each kind of attribute (bsdf, emitter, cut rule) on its own: `with` nearest to the leaf wins; an `override`
+//! beats every `with` inside of it, and the outermost `override` wins. A material that a leaf already has counts as
+//! a `with` at the leaf.
+//!
+//! Cut rules say what covers the walls that a subtraction leaves. In A − B the rule comes from the first of: a rule
+//! on or inside B; a rule on A itself; a rule around the difference (or further out); otherwise a wall shows B's own
+//! material. A rule for a bsdf replaces the whole material (a cut wall does not
+//! emit), but for what an `override` further out forces. The rule *inherit* takes the
+//! material of what is cut, which is the material of A at that point: of the first operand of a difference or an
+//! intersection, and of the first operand of a union that holds the point. Where that is not one material
+//! everywhere, the difference is distributed over the union: (X ∪ Y) − B = (X − B') ∪ (Y − B''), B' covered like X
+//! and B'' like Y. Where X and Y overlap, both walls coincide and the first operand has precedence, which is X.
+//!
+//! Rewrites: `attach`, `override`, `cut_with`, `inherit`, `distribute_inherit`.
+
+use arsc_diagnostics::Span;
+use arsc_geometry::DAffine3;
+use arsc_ir::{Attributes, CutRule, Ir, Leaf, Material, MaterialId, Node, NodeId, NodeKind, Precedence};
+use rustc_hash::FxHashMap;
+
+use crate::intern::Interner;
+use crate::pipeline::Log;
+
+/// What surrounds a node: the attributes that reach it from outside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct State {
+    attached: Attributes,
+    forced: Attributes,
+    /// `Some` inside of a subtrahend; the inner value is the material of what is cut, where it is one.
+    cutting: Option<Option<MaterialId>>,
+    /// Inside of a subtrahend to which a cut rule applies.
+    cover: Option<MaterialId>,
+}
+
+/// The material of a solid at its inner points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Interior {
+    Empty,
+    One(MaterialId),
+    Mixed,
+}
+
+/// Work to do; results of earlier tasks lie on a stack.
+enum Task {
+    Enter {
+        node: NodeId,
+        state: State,
+    },
+    /// Takes the operands from the results.
+    Rebuild {
+        node: NodeId,
+        state: State,
+    },
+    /// The first operand of a difference is done: now the others.
+    Minuend {
+        node: NodeId,
+        state: State,
+    },
+    /// Subtracts the next of the remaining operands from the last result.
+    SubtractNext {
+        node: NodeId,
+        operand: usize,
+        state: State,
+    },
+    /// Subtracts one operand of the source from a finished node; `minuend_from_here` maps from the frame of the
+    /// operand to the frame of the node.
+    Subtract {
+        minuend: NodeId,
+        operand: NodeId,
+        minuend_from_here: Option<Box<DAffine3>>,
+        state: State,
+        origin: Span,
+    },
+    Difference {
+        minuend: NodeId,
+        minuend_from_here: Option<Box<DAffine3>>,
+        origin: Span,
+    },
+    Union {
+        operands: usize,
+        origin: Span,
+    },
+    ReplaceFirst {
+        node: NodeId,
+    },
+    Wrap {
+        parent_from_child: Box<DAffine3>,
+        origin: Span,
+    },
+}
+
+struct Propagation<'a, 'b> {
+    source: &'a Ir,
+    uses: Vec<u32>,
+    has_inherit: Vec<bool>,
+    out: Vec<Node>,
+    interior: Vec<Interior>,
+    memo: FxHashMap<(NodeId, State), NodeId>,
+    tasks: Vec<Task>,
+    results: Vec<NodeId>,
+    bsdf: Vec<u32>,
+    emitter: Vec<u32>,
+    materials: Interner<Material>,
+    log: &'a mut Log<'b>,
+}
+
+pub(crate) fn run(ir: Ir, log: &mut Log) -> Ir {
+    let mut bsdfs = Interner::new();
+    let bsdf = ir.bsdfs.iter().map(|bsdf| bsdfs.intern(bsdf.clone())).collect();
+    let mut emitters = Interner::new();
+    let emitter = ir.emitters.iter().map(|emitter| emitters.intern(emitter.clone())).collect();
+    let mut propagation = Propagation {
+        uses: ir.uses(),
+        has_inherit: has_inherit(&ir),
+        source: &ir,
+        out: Vec::with_capacity(ir.nodes.len()),
+        interior: Vec::with_capacity(ir.nodes.len()),
+        memo: FxHashMap::default(),
+        tasks: vec![Task::Enter { node: ir.root, state: State::default() }],
+        results: Vec::new(),
+        bsdf,
+        emitter,
+        materials: Interner::new(),
+        log,
+    };
+    while let Some(task) = propagation.tasks.pop() {
+        propagation.step(task);
+    }
+    let root = propagation.pop();
+    let (nodes, materials) = (propagation.out, propagation.materials.values);
+    Ir {
+        nodes,
+        root,
+        bsdfs: bsdfs.values,
+        emitters: emitters.values,
+        materials,
+        camera: ir.camera,
+        actions: ir.actions,
+    }
+}
+
+/// Whether the rule `inherit` stands on or below a node.
+fn has_inherit(ir: &Ir) -> Vec<bool> {
+    let mut found = vec![false; ir.nodes.len()];
+    for (id, node) in ir.nodes.iter().enumerate() {
+        let here =
+            matches!(&node.kind, NodeKind::Attributes { attributes, .. } if attributes.cut == Some(CutRule::Inherit));
+        found[id] = here || node.kind.children().iter().any(|child| found[child.index()]);
+    }
+    found
+}
+
+impl Propagation<'_, '_> {
+    fn pop(&mut self) -> NodeId {
+        self.results.pop().expect("every task leaves one result")
+    }
+
+    fn step(&mut self, task: Task) {
+        match task {
+            Task::Enter { node, state } => self.enter(node, state),
+            Task::Rebuild { node, state } => self.rebuild(node, state),
+            Task::Minuend { node, state } => self.minuend(node, state),
+            Task::SubtractNext { node, operand, state } => self.subtract_next(node, operand, state),
+            Task::Subtract { minuend, operand, minuend_from_here, state, origin } => {
+                self.subtract(minuend, operand, minuend_from_here, state, origin)
+            }
+            Task::Difference { minuend, minuend_from_here, origin } => {
+                let mut operand = self.pop();
+                if let Some(map) = minuend_from_here {
+                    operand = self.push(NodeKind::Transform { parent_from_child: map, child: operand }, origin);
+                }
+                let result = self.push(NodeKind::Difference(vec![minuend, operand]), origin);
+                self.results.push(result);
+            }
+            Task::Union { operands, origin } => {
+                let operands = self.results.split_off(self.results.len() - operands);
+                let result = self.push(NodeKind::Union(operands), origin);
+                self.results.push(result);
+            }
+            Task::ReplaceFirst { node } => {
+                let Node { mut kind, origin } = self.out[node.index()].clone();
+                kind.children_mut()[0] = self.pop();
+                let result = self.push(kind, origin);
+                self.results.push(result);
+            }
+            Task::Wrap { parent_from_child, origin } => {
+                let child = self.pop();
+                let result = self.push(NodeKind::Transform { parent_from_child, child }, origin);
+                self.results.push(result);
+            }
+        }
+    }
+
+    fn enter(&mut self, id: NodeId, state: State) {
+        let shared = self.uses[id.index()] > 1;
+        if shared && let Some(&done) = self.memo.get(&(id, state)) {
+            self.results.push(done);
+            return;
+        }
+        let source = self.source;
+        let node = source.node(id);
+        match &node.kind {
+            NodeKind::Leaf(leaf) => {
+                let kind = NodeKind::Leaf(Box::new(self.leaf(leaf, &state)));
+                self.finish(id, state, kind);
+            }
+            NodeKind::Light(_) | NodeKind::Environment(_) => self.finish(id, state, node.kind.clone()),
+            NodeKind::Attributes { attributes, precedence, child } => {
+                let state = self.attach(state, *attributes, *precedence);
+                self.tasks.push(Task::Enter { node: *child, state });
+            }
+            NodeKind::Difference(operands) if operands.len() > 1 => {
+                self.tasks.push(Task::Minuend { node: id, state });
+                self.tasks.push(Task::Enter { node: operands[0], state });
+            }
+            kind => {
+                self.tasks.push(Task::Rebuild { node: id, state });
+                let children = kind.children().iter().rev();
+                self.tasks.extend(children.map(|&node| Task::Enter { node, state }));
+            }
+        }
+    }
+
+    /// Collects the operands of a node that keeps its kind.
+    fn rebuild(&mut self, id: NodeId, state: State) {
+        let mut kind = self.source.kind(id).clone();
+        let children = kind.children_mut();
+        let first = self.results.len() - children.len();
+        children.copy_from_slice(&self.results[first..]);
+        self.results.truncate(first);
+        self.finish(id, state, kind);
+    }
+
+    fn finish(&mut self, id: NodeId, state: State, kind: NodeKind) {
+        let result = self.push(kind, self.source.node(id).origin);
+        if self.uses[id.index()] > 1 {
+            self.memo.insert((id, state), result);
+        }
+        self.results.push(result);
+    }
+
+    fn push(&mut self, kind: NodeKind, origin: Span) -> NodeId {
+        let interior = self.interior_of(&kind);
+        self.out.push(Node { kind, origin });
+        self.interior.push(interior);
+        NodeId(self.out.len() as u32 - 1)
+    }
+
+    fn interior_of(&self, kind: &NodeKind) -> Interior {
+        match kind {
+            NodeKind::Leaf(leaf) => match **leaf {
+                Leaf::Solid { material: Some(material), .. } => Interior::One(material),
+                _ => Interior::Empty,
+            },
+            NodeKind::Union(operands) | NodeKind::Group(operands) => {
+                operands.iter().fold(Interior::Empty, |sum, operand| match (sum, self.interior[operand.index()]) {
+                    (Interior::Empty, other) | (other, Interior::Empty) => other,
+                    (a, b) if a == b => a,
+                    _ => Interior::Mixed,
+                })
+            }
+            NodeKind::Light(_) | NodeKind::Environment(_) => Interior::Empty,
+            kind => kind.children().first().map_or(Interior::Empty, |first| self.interior[first.index()]),
+        }
+    }
+
+    fn attach(&mut self, mut state: State, attributes: Attributes, precedence: Precedence) -> State {
+        self.log.fire(if precedence == Precedence::Inner { "attach" } else { "override" });
+        match precedence {
+            Precedence::Inner => {
+                let attached = &mut state.attached;
+                attached.bsdf = attributes.bsdf.or(attached.bsdf);
+                attached.emitter = attributes.emitter.or(attached.emitter);
+                attached.cut = attributes.cut.or(attached.cut);
+            }
+            Precedence::Outer => {
+                let forced = &mut state.forced;
+                forced.bsdf = forced.bsdf.or(attributes.bsdf);
+                forced.emitter = forced.emitter.or(attributes.emitter);
+                forced.cut = forced.cut.or(attributes.cut);
+            }
+        }
+        if let (Some(minuend), Some(_)) = (state.cutting, attributes.cut) {
+            state.cover = self.cover(&state, minuend);
+        }
+        state
+    }
+
+    /// What a wall shows under the cut rule in force, if there is one.
+    fn cover(&mut self, state: &State, minuend: Option<MaterialId>) -> Option<MaterialId> {
+        match state.forced.cut.or(state.attached.cut)? {
+            CutRule::Inherit => {
+                self.log.fire("inherit");
+                minuend
+            }
+            CutRule::Bsdf(bsdf) => {
+                self.log.fire("cut_with");
+                Some(self.material(state.forced.bsdf.or(Some(bsdf)), state.forced.emitter))
+            }
+        }
+    }
+
+    fn leaf(&mut self, leaf: &Leaf, state: &State) -> Leaf {
+        let mut leaf = leaf.clone();
+        let (Leaf::Solid { material, .. } | Leaf::Surface { material, .. }) = &mut leaf;
+        let own = material.map(|id| &self.source.materials[id.0 as usize]);
+        let bsdf = state.forced.bsdf.or(own.and_then(|own| own.bsdf)).or(state.attached.bsdf);
+        let emitter = state.forced.emitter.or(own.and_then(|own| own.emitter)).or(state.attached.emitter);
+        *material = Some(state.cover.unwrap_or_else(|| self.material(bsdf, emitter)));
+        leaf
+    }
+
+    /// The material of these entries of the source's tables.
+    fn material(&mut self, bsdf: Option<u32>, emitter: Option<u32>) -> MaterialId {
+        MaterialId(self.materials.intern(Material {
+            bsdf: bsdf.map(|bsdf| self.bsdf[bsdf as usize]),
+            emitter: emitter.map(|emitter| self.emitter[emitter as usize]),
+        }))
+    }
+
+    /// The minuend of a difference is the last result: goes on to what is subtracted from it.
+    fn minuend(&mut self, id: NodeId, state: State) {
+        let NodeKind::Difference(operands) = self.source.kind(id) else { unreachable!("a difference was entered") };
+        let minuend = self.results[self.results.len() - 1];
+        let own_rule = self.rule_on(operands[0]);
+        let mut inner = state;
+        if state.forced.cut.is_none() {
+            inner.attached.cut = own_rule.or(state.attached.cut);
+        }
+        let rule = inner.forced.cut.or(inner.attached.cut);
+        let inherits = rule == Some(CutRule::Inherit) || operands[1..].iter().any(|b| self.has_inherit[b.index()]);
+        if inherits && self.interior[minuend.index()] == Interior::Mixed {
+            self.log.fire("distribute_inherit");
+            self.tasks.push(Task::SubtractNext { node: id, operand: 1, state: inner });
+            return;
+        }
+        let inner = self.cutting(inner, minuend);
+        self.tasks.push(Task::Rebuild { node: id, state });
+        self.tasks.extend(operands[1..].iter().rev().map(|&node| Task::Enter { node, state: inner }));
+    }
+
+    /// The state for what is subtracted from a finished node.
+    fn cutting(&mut self, mut state: State, minuend: NodeId) -> State {
+        let material = match self.interior[minuend.index()] {
+            Interior::One(material) => Some(material),
+            Interior::Empty | Interior::Mixed => None,
+        };
+        state.cutting = Some(material);
+        state.cover = self.cover(&state, material);
+        state
+    }
+
+    /// The cut rule at the head of a node.
+    fn rule_on(&self, mut id: NodeId) -> Option<CutRule> {
+        let mut rule = None;
+        loop {
+            match self.source.kind(id) {
+                NodeKind::Attributes { attributes, precedence, child } => {
+                    match precedence {
+                        Precedence::Inner => rule = attributes.cut.or(rule),
+                        Precedence::Outer if attributes.cut.is_some() => return attributes.cut,
+                        Precedence::Outer => {}
+                    }
+                    id = *child;
+                }
+                NodeKind::Transform { child, .. } => id = *child,
+                _ => return rule,
+            }
+        }
+    }
+
+    fn subtract_next(&mut self, id: NodeId, operand: usize, state: State) {
+        let NodeKind::Difference(operands) = self.source.kind(id) else { unreachable!("a difference was entered") };
+        let Some(&subtrahend) = operands.get(operand) else { return };
+        let (minuend, origin) = (self.pop(), self.source.node(id).origin);
+        self.tasks.push(Task::SubtractNext { node: id, operand: operand + 1, state });
+        self.tasks.push(Task::Subtract { minuend, operand: subtrahend, minuend_from_here: None, state, origin });
+    }
+
+    fn subtract(
+        &mut self,
+        minuend: NodeId,
+        operand: NodeId,
+        minuend_from_here: Option<Box<DAffine3>>,
+        state: State,
+        origin: Span,
+    ) {
+        let kind = self.out[minuend.index()].kind.clone();
+        match kind {
+            _ if self.interior[minuend.index()] != Interior::Mixed => {
+                let state = self.cutting(state, minuend);
+                self.tasks.push(Task::Difference { minuend, minuend_from_here, origin });
+                self.tasks.push(Task::Enter { node: operand, state });
+            }
+            NodeKind::Transform { parent_from_child, child } => {
+                let child_from_parent = parent_from_child.inverse();
+                let map = minuend_from_here.map_or(child_from_parent, |map| child_from_parent * *map);
+                let minuend_from_here = Some(Box::new(map));
+                self.tasks.push(Task::Wrap { parent_from_child, origin });
+                self.tasks.push(Task::Subtract { minuend: child, operand, minuend_from_here, state, origin });
+            }
+            NodeKind::Union(parts) | NodeKind::Group(parts) => {
+                self.tasks.push(Task::Union { operands: parts.len(), origin });
+                self.tasks.extend(parts.into_iter().rev().map(|minuend| {
+                    let minuend_from_here = minuend_from_here.clone();
+                    Task::Subtract { minuend, operand, minuend_from_here, state, origin }
+                }));
+            }
+            kind => {
+                let first = kind.children()[0];
+                self.tasks.push(Task::ReplaceFirst { node: minuend });
+                self.tasks.push(Task::Subtract { minuend: first, operand, minuend_from_here, state, origin });
+            }
+        }
+    }
+}
