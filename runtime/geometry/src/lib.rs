@@ -3,12 +3,28 @@
 //! Pure mathematics without Embree, so that the compiler's geometric passes and lints use the same shapes as
 //! the renderer. Conventions: right-handed, z up; lengths in scene units (one unit is one metre); `dir` of a ray
 //! is a unit vector in the world and arbitrary after a transform to object space; normals point out of the solid.
+//!
+//! [`Shape`] is a solid in object space, [`Placed`] one under an affine map with everything that a tracer or a lint asks:
+//! crossings with a line, membership, bounds, [`Classification`] of a box, surface frames and area sampling.
 
 mod aabb;
+mod area;
+mod classify;
+mod cone;
+mod crossings;
+mod cuboid;
+mod half_space;
+mod placed;
 mod ray;
 mod shape;
+mod sphere;
+mod torus;
 
 pub use aabb::Aabb;
+pub use area::AreaPoint;
+pub use classify::Classification;
+pub use crossings::Crossings;
 pub use glam::{DAffine3, DMat3, DVec2, DVec3};
+pub use placed::{PlaceError, Placed, SurfacePoint, invert};
 pub use ray::Ray;
-pub use shape::Shape;
+pub use shape::{LocalPoint, Shape};

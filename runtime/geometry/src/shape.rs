@@ -1,6 +1,8 @@
 //! The solid shapes in their canonical placement.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+
+use crate::{Aabb, Crossings, cone, cuboid, half_space, sphere, torus};
 
 /// A closed solid in object space. Sizes are positive and finite; the compiler guarantees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,4 +22,124 @@ pub enum Shape {
     Torus { major: f64, minor: f64 },
     /// z <= 0.
     HalfSpace,
+}
+
+/// A point on a shape's surface with its frame, in object space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalPoint {
+    /// On the surface to rounding.
+    pub p: DVec3,
+    /// Outward unit normal.
+    pub n: DVec3,
+    pub uv: DVec2,
+    /// Direction of growing u; not normalised, tangent.
+    pub dpdu: DVec3,
+}
+
+impl Shape {
+    /// Every size is positive and finite as the variants demand.
+    pub fn is_valid(&self) -> bool {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        match *self {
+            Shape::Sphere { radius } | Shape::InfiniteCylinder { radius } => positive(radius),
+            Shape::Box { min, max } => min.is_finite() && max.is_finite() && min.cmplt(max).all(),
+            Shape::Cylinder { radius, height } => positive(radius) && positive(height),
+            Shape::Cone { base_radius, top_radius, height } => {
+                let radii = base_radius >= 0.0 && top_radius >= 0.0 && positive(base_radius + top_radius);
+                radii && positive(height)
+            }
+            Shape::Torus { major, minor } => positive(major) && positive(minor),
+            Shape::HalfSpace => true,
+        }
+    }
+
+    /// Membership in the closed solid.
+    pub fn contains(&self, p: DVec3) -> bool {
+        let ring = || p.truncate().length();
+        match *self {
+            Shape::Sphere { radius } => p.length() <= radius,
+            Shape::Box { min, max } => Aabb::new(min, max).contains(p),
+            Shape::Cylinder { radius, height } => (0.0..=height).contains(&p.z) && ring() <= radius,
+            Shape::InfiniteCylinder { radius } => ring() <= radius,
+            Shape::Cone { base_radius, top_radius, height } => {
+                (0.0..=height).contains(&p.z) && ring() <= base_radius + (top_radius - base_radius) * (p.z / height)
+            }
+            Shape::Torus { major, minor } => (ring() - major).hypot(p.z) <= minor,
+            Shape::HalfSpace => p.z <= 0.0,
+        }
+    }
+
+    /// Tight box in object space; infinite where the shape is.
+    pub fn bounds(&self) -> Aabb {
+        let inf = f64::INFINITY;
+        match *self {
+            Shape::Sphere { radius } => Aabb::new(DVec3::splat(-radius), DVec3::splat(radius)),
+            Shape::Box { min, max } => Aabb::new(min, max),
+            Shape::Cylinder { radius, height } => upright(radius, 0.0, height),
+            Shape::InfiniteCylinder { radius } => upright(radius, -inf, inf),
+            Shape::Cone { base_radius, top_radius, height } => upright(base_radius.max(top_radius), 0.0, height),
+            Shape::Torus { major, minor } => upright(major + minor, -minor, minor),
+            Shape::HalfSpace => Aabb::new(DVec3::NEG_INFINITY, DVec3::new(inf, inf, 0.0)),
+        }
+    }
+
+    /// The shape is finite.
+    pub fn is_bounded(&self) -> bool {
+        !matches!(self, Shape::InfiniteCylinder { .. } | Shape::HalfSpace)
+    }
+
+    /// The shape is convex.
+    pub fn is_convex(&self) -> bool {
+        !matches!(self, Shape::Torus { .. })
+    }
+
+    /// Length that rounding errors of its own scale with.
+    pub fn magnitude(&self) -> f64 {
+        match *self {
+            Shape::Sphere { radius } | Shape::InfiniteCylinder { radius } => radius,
+            Shape::Box { min, max } => min.abs().max(max.abs()).max_element(),
+            Shape::Cylinder { radius, height } => radius.max(height),
+            Shape::Cone { base_radius, top_radius, height } => base_radius.max(top_radius).max(height),
+            Shape::Torus { major, minor } => major + minor,
+            Shape::HalfSpace => 0.0,
+        }
+    }
+
+    /// Crossings of the line `origin + t dir` in object space; `dir` need not be unit, but finite and not zero.
+    pub fn crossings(&self, origin: DVec3, dir: DVec3) -> Crossings {
+        match *self {
+            Shape::Sphere { radius } => unit(dir, |d| sphere::crossings(radius, origin, d)),
+            Shape::Box { min, max } => cuboid::crossings(min, max, origin, dir),
+            Shape::Cylinder { radius, height } => cone::cylinder_crossings(radius, height, origin, dir),
+            Shape::InfiniteCylinder { radius } => cone::infinite_cylinder_crossings(radius, origin, dir),
+            Shape::Cone { base_radius, top_radius, height } => {
+                unit(dir, |d| cone::cone_crossings(base_radius, top_radius, height, origin, d))
+            }
+            Shape::Torus { major, minor } => unit(dir, |d| torus::crossings(major, minor, origin, d)),
+            Shape::HalfSpace => half_space::crossings(origin, dir),
+        }
+    }
+
+    /// The surface point nearest to `p` (which lies close to that face) with its frame.
+    pub fn surface(&self, p: DVec3, face: u8) -> LocalPoint {
+        match *self {
+            Shape::Sphere { radius } => sphere::surface(radius, p),
+            Shape::Box { min, max } => cuboid::surface(min, max, p, face),
+            Shape::Cylinder { radius, height } => cone::surface(radius, radius, height, p, face),
+            Shape::InfiniteCylinder { radius } => cone::surface(radius, radius, f64::INFINITY, p, face),
+            Shape::Cone { base_radius, top_radius, height } => cone::surface(base_radius, top_radius, height, p, face),
+            Shape::Torus { major, minor } => torus::surface(major, minor, p),
+            Shape::HalfSpace => half_space::surface(p),
+        }
+    }
+}
+
+/// Solves along the normalised direction and restores the parameter.
+fn unit(dir: DVec3, solve: impl FnOnce(DVec3) -> Crossings) -> Crossings {
+    let length = dir.length();
+    solve(dir / length).remapped(0.0, 1.0 / length)
+}
+
+fn upright(radius: f64, low: f64, high: f64) -> Aabb {
+    Aabb::new(DVec3::new(-radius, -radius, low), DVec3::new(radius, radius, high))
 }

@@ -1,0 +1,198 @@
+//! A placed shape against a box: certainly outside, certainly inside, or neither.
+//!
+//! Conservative: `Boundary` may be said too often (slow), the other two never wrongly (loses surface). The box becomes
+//! a parallelepiped in object space, centre `c` and half edges `e`; separating directions are found by projecting the
+//! shape's centre onto it (coordinate descent), and any direction at all gives a valid proof.
+
+use glam::{DVec2, DVec3};
+
+use crate::{Aabb, Placed, Shape};
+
+/// How a box lies to a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Classification {
+    Outside,
+    Inside,
+    Boundary,
+}
+
+impl Placed {
+    /// Where all of the box lies.
+    pub fn classify(&self, cell: &Aabb) -> Classification {
+        if cell.is_empty() || !self.bounds().overlaps(cell) {
+            return Classification::Outside;
+        }
+        if !cell.is_finite() {
+            return Classification::Boundary;
+        }
+        let region = Region::new(self, cell);
+        if region.outside(self.shape()) {
+            Classification::Outside
+        } else if region.inside(self.shape()) {
+            Classification::Inside
+        } else {
+            Classification::Boundary
+        }
+    }
+}
+
+/// A box seen from object space.
+struct Region {
+    c: DVec3,
+    e: [DVec3; 3],
+}
+
+impl Region {
+    fn new(placed: &Placed, cell: &Aabb) -> Region {
+        let map = placed.object_from_world();
+        let half = cell.extent() * 0.5;
+        let m = &map.matrix3;
+        Region { c: map.transform_point3(cell.center()), e: [m.x_axis * half.x, m.y_axis * half.y, m.z_axis * half.z] }
+    }
+
+    /// Half the width along `n`.
+    fn reach(&self, n: DVec3) -> f64 {
+        self.e.iter().map(|e| e.dot(n).abs()).sum()
+    }
+
+    fn z_range(&self) -> (f64, f64) {
+        let reach = self.e.iter().map(|e| e.z.abs()).sum::<f64>();
+        (self.c.z - reach, self.c.z + reach)
+    }
+
+    fn corners(&self) -> impl Iterator<Item = DVec3> + '_ {
+        (0..8).map(|i| {
+            let sign = |bit: usize| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+            self.c + self.e[0] * sign(0) + self.e[1] * sign(1) + self.e[2] * sign(2)
+        })
+    }
+
+    /// A point of the region close to the nearest one to `target`, in three dimensions or (flat) in x and y.
+    fn nearest(&self, target: DVec3, flat: bool) -> DVec3 {
+        let flatten = |v: DVec3| if flat { DVec3::new(v.x, v.y, 0.0) } else { v };
+        let mut at = flatten(self.c - target);
+        let e = self.e.map(flatten);
+        let mut s = [0.0f64; 3];
+        for _ in 0..4 {
+            for i in 0..3 {
+                let ee = e[i].length_squared();
+                if ee > 0.0 {
+                    let next = (s[i] - at.dot(e[i]) / ee).clamp(-1.0, 1.0);
+                    at += e[i] * (next - s[i]);
+                    s[i] = next;
+                }
+            }
+        }
+        at
+    }
+
+    /// A lower bound on the distance to `target`, proved by a separating direction.
+    fn distance(&self, target: DVec3) -> f64 {
+        match self.nearest(target, false).try_normalize() {
+            Some(n) => (self.c - target).dot(n) - self.reach(n),
+            None => 0.0,
+        }
+    }
+
+    /// A lower bound on the distance to the z axis, with the direction that proves it.
+    fn axis_distance(&self) -> (f64, DVec3) {
+        match self.nearest(DVec3::ZERO, true).try_normalize() {
+            Some(n) => (self.c.dot(n) - self.reach(n), n),
+            None => (0.0, DVec3::X),
+        }
+    }
+
+    fn outside(&self, shape: &Shape) -> bool {
+        match *shape {
+            Shape::Sphere { radius } => self.distance(DVec3::ZERO) > radius,
+            Shape::Box { min, max } => self.misses_box(min, max),
+            Shape::InfiniteCylinder { radius } => self.axis_distance().0 > radius,
+            Shape::Cylinder { radius, height } => {
+                self.beyond_slab(0.0, height) || self.axis_distance().0 > radius || self.above_rim(radius, 0.0, height)
+            }
+            Shape::Cone { base_radius, top_radius, height } => self.misses_cone(base_radius, top_radius, height),
+            Shape::Torus { major, minor } => self.misses_torus(major, minor),
+            Shape::HalfSpace => self.z_range().0 > 0.0,
+        }
+    }
+
+    fn beyond_slab(&self, low: f64, high: f64) -> bool {
+        let (z0, z1) = self.z_range();
+        z0 > high || z1 < low
+    }
+
+    /// Separated from an upright cylinder by a direction across its rim: that to the nearest point from the middle
+    /// of the part of the axis beside the region.
+    fn above_rim(&self, radius: f64, low: f64, high: f64) -> bool {
+        let foot = DVec3::new(0.0, 0.0, self.c.z.clamp(low, high));
+        let Some(n) = self.nearest(foot, false).try_normalize() else { return false };
+        let support = radius * n.truncate().length() + (n.z * low).max(n.z * high);
+        self.c.dot(n) - self.reach(n) > support
+    }
+
+    fn misses_cone(&self, base: f64, top: f64, height: f64) -> bool {
+        if self.beyond_slab(0.0, height) {
+            return true;
+        }
+        let slope = (top - base) / height;
+        let (z0, z1) = self.z_range();
+        let widest = (base + slope * z0.clamp(0.0, height)).max(base + slope * z1.clamp(0.0, height));
+        let (distance, n) = self.axis_distance();
+        if distance > widest {
+            return true;
+        }
+        // The tangent plane on the region's side: n · p <= base + slope z for all points of the cone.
+        let n = DVec3::new(n.x, n.y, -slope);
+        self.c.dot(n) - self.reach(n) > base
+    }
+
+    fn misses_torus(&self, major: f64, minor: f64) -> bool {
+        if self.beyond_slab(-minor, minor) {
+            return true;
+        }
+        let (rho, z) = (self.rho_range(), self.z_range());
+        let gap = DVec2::new((rho.0 - major).max(major - rho.1).max(0.0), z.0.max(-z.1).max(0.0));
+        gap.length() > minor || self.tube_distance(major) - self.half_diagonal() > minor
+    }
+
+    /// Distance of the centre from the tube's centre circle: 1-Lipschitz.
+    fn tube_distance(&self, major: f64) -> f64 {
+        (self.c.truncate().length() - major).hypot(self.c.z)
+    }
+
+    /// Distance of the farthest corner from the centre.
+    fn half_diagonal(&self) -> f64 {
+        self.corners().map(|p| p.distance_squared(self.c)).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Bounds on the distance from the z axis.
+    fn rho_range(&self) -> (f64, f64) {
+        let far = self.corners().map(|p| p.truncate().length_squared()).fold(0.0, f64::max).sqrt();
+        (self.axis_distance().0.max(0.0), far)
+    }
+
+    /// Separating axes of two parallelepipeds: both sets of face normals and the edge products.
+    fn misses_box(&self, min: DVec3, max: DVec3) -> bool {
+        let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
+        let offset = self.c - center;
+        let separates = |n: DVec3| offset.dot(n).abs() > self.reach(n) + half.dot(n.abs());
+        let [a, b, c] = self.e;
+        let units = [DVec3::X, DVec3::Y, DVec3::Z];
+        units.iter().any(|&n| separates(n))
+            || [a.cross(b), b.cross(c), c.cross(a)].into_iter().any(separates)
+            || self.e.iter().any(|e| units.iter().any(|u| separates(e.cross(*u))))
+    }
+
+    /// Convex shapes hold the region when they hold its corners.
+    fn inside(&self, shape: &Shape) -> bool {
+        let Shape::Torus { major, minor } = *shape else {
+            return self.corners().all(|p| shape.contains(p));
+        };
+        if self.tube_distance(major) + self.half_diagonal() <= minor {
+            return true;
+        }
+        let (rho, z) = (self.rho_range(), self.z_range());
+        let far = DVec2::new((rho.1 - major).max(major - rho.0), z.1.max(-z.0));
+        far.length() <= minor
+    }
+}
