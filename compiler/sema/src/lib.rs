@@ -58,11 +58,19 @@ impl Default for Limits {
     }
 }
 
+/// A value given to a `param` from outside. The driver has read it and reported its slips; its spans point into a
+/// source of its own, named `--set samples`.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    pub name: String,
+    pub value: ast::Expr,
+}
+
 /// What analysis is asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// `--set name=value`, in order; the value is an expression of the language.
-    pub params: Vec<(String, String)>,
+    /// `--set name=value`, in order; a later one wins.
+    pub params: Vec<Setting>,
     pub limits: Limits,
 }
 
