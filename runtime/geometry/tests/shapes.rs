@@ -77,7 +77,7 @@ fn crossings_agree_with_membership() {
                 let crossings = placed.crossings(origin, dir);
                 assert!(crossings.t().is_sorted(), "{shape:?} {crossings:?}");
                 assert_eq!(
-                    crossings.len() % 2 == 0 && !crossings.inside_before,
+                    crossings.len().is_multiple_of(2) && !crossings.inside_before,
                     shape_is_finite_here(&placed, &crossings)
                 );
                 crossed += crossings.len() as u32;
@@ -122,6 +122,9 @@ fn surface_points_are_on_the_surface_with_outward_normals() {
             let size = placed.world_from_object().matrix3.x_axis.length();
             for _ in 0..40 {
                 let (origin, dir) = random_line(&placed, &mut rng);
+                if placed.object_from_world().transform_vector3(dir).z.abs() < 1e-9 * dir.length() / size {
+                    continue; // May lie within a cap, where the surface has two normals.
+                }
                 // An infinite cylinder is met arbitrarily far away by nearly parallel lines.
                 for (t, face) in placed.crossings(origin, dir).iter().filter(|(t, _)| t.abs() < 100.0 * size) {
                     let s = placed.surface(origin + dir * t, face);
