@@ -4,11 +4,24 @@
 //! [`Scene`] that answers: the nearest hit, occlusion, and all intervals along a ray. Positions and distances
 //! are double precision and carry error bounds; there is no fixed epsilon. Materials are opaque numbers here.
 
+mod coincidence;
+mod error;
+mod expression;
+mod frame;
 mod geometry;
 mod hit;
+mod nearest;
+mod scene;
+mod solid;
+mod surfaces;
+mod tree;
+
+use expression::Expression;
 
 pub use arsc_geometry::{Aabb, Ray, Shape};
+pub use error::AccelError;
 pub use geometry::{
     Csg, CsgLeaf, Instance, MaterialIndex, SceneGeometry, Solid, Strategy, Surface, SurfaceShape, TriangleMesh,
 };
-pub use hit::{Hit, Interval, PartId};
+pub use hit::{AreaSample, Hit, Interval, PartId};
+pub use scene::{BuildOptions, BuildStats, Part, PartKind, Scene};

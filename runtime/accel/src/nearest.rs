@@ -1,0 +1,80 @@
+//! The nearest candidate along a ray, with ties settled by part number.
+//!
+//! Surfaces of separate solids and open surfaces may coincide too (a lamp in the plane of a ceiling). Within the greater
+//! of the two tolerances the lower part wins, and the point's error bound is widened so that rays that leave start
+//! beyond both.
+
+use glam::DVec2;
+
+use crate::tree::Transition;
+
+/// Something met by a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Parameter of the scene's ray.
+    pub t: f64,
+    pub part: u32,
+    /// Distance within which it coincides with others.
+    pub tolerance: f64,
+    pub target: Target,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// `solid` counts instances after solids.
+    Solid {
+        solid: u32,
+        transition: Transition,
+    },
+    Flat {
+        surface: u32,
+    },
+    Triangle {
+        surface: u32,
+        triangle: u32,
+        weights: DVec2,
+    },
+}
+
+/// The best so far.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearest {
+    pub best: Option<Candidate>,
+    /// Another candidate coincides with the best, at most this far away (with its own tolerance).
+    pub tie: f64,
+    t_max: f64,
+}
+
+impl Nearest {
+    pub fn new(t_max: f64) -> Nearest {
+        Nearest { best: None, tie: 0.0, t_max }
+    }
+
+    /// Beyond this nothing matters any more.
+    pub fn limit(&self) -> f64 {
+        self.best.map_or(self.t_max, |best| best.t + best.tolerance)
+    }
+
+    pub fn offer(&mut self, candidate: Candidate) {
+        if !(candidate.t > 0.0 && candidate.t < self.t_max) {
+            return;
+        }
+        let Some(best) = &mut self.best else {
+            self.best = Some(candidate);
+            return;
+        };
+        let tolerance = best.tolerance.max(candidate.tolerance);
+        let apart = candidate.t - best.t;
+        if apart.abs() <= tolerance {
+            if candidate.part != best.part {
+                self.tie = self.tie.max(apart.abs());
+            }
+            if candidate.part < best.part {
+                *best = candidate;
+            }
+        } else if apart < 0.0 {
+            *best = candidate;
+            self.tie = 0.0;
+        }
+    }
+}

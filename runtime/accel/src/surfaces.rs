@@ -1,0 +1,329 @@
+//! Open surfaces in double precision: flat shapes in their own frame, and triangles.
+//!
+//! Normals go through the inverse transpose, so a mirrored surface keeps the side that its author gave it.
+
+use glam::{DAffine3, DVec2, DVec3};
+
+use arsc_geometry::{Aabb, SurfacePoint, invert};
+
+use crate::{AccelError, Surface, SurfaceShape, TriangleMesh};
+
+/// Roundings granted to a position on a surface.
+const ROUNDINGS: f64 = 32.0;
+/// Surfaces closer than so many error bounds coincide.
+const COINCIDENT: f64 = 4.0;
+
+/// A surface, checked and placed.
+#[derive(Clone, Debug)]
+pub enum SurfaceModel {
+    Flat(Flat),
+    Triangles(Triangles),
+}
+
+impl SurfaceModel {
+    /// `index` names the surface in errors.
+    pub fn new(surface: &Surface, index: u32) -> Result<SurfaceModel, AccelError> {
+        let fail = |reason| AccelError::Surface { surface: index, reason };
+        let map = surface.world_from_object;
+        let inverse = invert(&map).ok_or(fail("the map has no finite inverse"))?;
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let flat = |outline| Ok(SurfaceModel::Flat(Flat { outline, map, inverse }));
+        match &surface.shape {
+            SurfaceShape::Rectangle { size } if positive(size.x) && positive(size.y) => {
+                flat(Outline::Rectangle { half: *size * 0.5 })
+            }
+            SurfaceShape::Disk { radius } if positive(*radius) => flat(Outline::Disk { radius: *radius }),
+            SurfaceShape::Rectangle { .. } | SurfaceShape::Disk { .. } => {
+                Err(fail("a size is not positive and finite"))
+            }
+            SurfaceShape::Plane => flat(Outline::Plane),
+            SurfaceShape::Triangle(corners) => {
+                let uvs = vec![DVec2::ZERO, DVec2::X, DVec2::Y];
+                Triangles::place(corners.to_vec(), vec![[0, 1, 2]], uvs, vec![], &map, &inverse).map_err(fail)
+            }
+            SurfaceShape::Quad(corners) => {
+                let uvs = vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+                Triangles::place(corners.to_vec(), vec![[0, 1, 3], [2, 3, 1]], uvs, vec![], &map, &inverse)
+                    .map_err(fail)
+            }
+            SurfaceShape::Mesh(mesh) => from_mesh(mesh, &map, &inverse).map_err(fail),
+        }
+    }
+
+    /// Holds the surface; infinite where it is.
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            SurfaceModel::Flat(flat) => flat.bounds(),
+            SurfaceModel::Triangles(triangles) => triangles.bounds,
+        }
+    }
+
+    /// World area; infinite for a plane.
+    pub fn area(&self) -> f64 {
+        match self {
+            SurfaceModel::Flat(flat) => flat.area(),
+            SurfaceModel::Triangles(triangles) => triangles.area(),
+        }
+    }
+
+    /// A point uniform over the world area; `None` for a plane. `choice` picks the triangle.
+    pub fn sample(&self, choice: f64, u: [f64; 2]) -> Option<SurfacePoint> {
+        match self {
+            SurfaceModel::Flat(flat) => flat.sample(u),
+            SurfaceModel::Triangles(triangles) => triangles.sample(choice, u),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Outline {
+    Rectangle { half: DVec2 },
+    Disk { radius: f64 },
+    Plane,
+}
+
+/// Part of the plane z = 0 of its own frame, normal +z.
+#[derive(Clone, Debug)]
+pub struct Flat {
+    outline: Outline,
+    map: DAffine3,
+    inverse: DAffine3,
+}
+
+impl Flat {
+    /// Parameter of the crossing.
+    pub fn crossing(&self, origin: DVec3, dir: DVec3) -> Option<f64> {
+        let o = self.inverse.transform_point3(origin);
+        let d = self.inverse.transform_vector3(dir);
+        let t = -o.z / d.z;
+        let p = (o + d * t).truncate();
+        let within = match self.outline {
+            Outline::Rectangle { half } => p.abs().cmple(half).all(),
+            Outline::Disk { radius } => p.length() <= radius,
+            Outline::Plane => true,
+        };
+        (t.is_finite() && within).then_some(t)
+    }
+
+    /// Distance along `dir` within which another surface at `p` coincides.
+    pub fn tolerance(&self, p: DVec3, dir: DVec3) -> f64 {
+        COINCIDENT * self.error_at(p) / self.normal().dot(dir).abs().max(1e-3)
+    }
+
+    /// The surface point at `p`, which lies close to it.
+    pub fn surface(&self, p: DVec3) -> SurfacePoint {
+        let local = self.inverse.transform_point3(p).truncate();
+        let uv = match self.outline {
+            Outline::Rectangle { half } => local / (2.0 * half) + 0.5,
+            Outline::Disk { radius } => local / (2.0 * radius) + 0.5,
+            Outline::Plane => local,
+        };
+        let n = self.normal();
+        let dpdu = self.map.matrix3.x_axis;
+        SurfacePoint {
+            p: self.map.transform_point3(local.extend(0.0)),
+            p_error: self.error_at(p),
+            n,
+            uv,
+            dpdu: (dpdu - n * n.dot(dpdu)).normalize(),
+        }
+    }
+
+    fn normal(&self) -> DVec3 {
+        self.inverse.matrix3.transpose().z_axis.normalize()
+    }
+
+    /// Bound on the error of a point near `p`: that of the height over the plane, mapped back.
+    fn error_at(&self, p: DVec3) -> f64 {
+        let row = self.inverse.matrix3.transpose().z_axis;
+        let here = p.abs().max_element().max(self.map.translation.abs().max_element());
+        let sizes = self.map.matrix3.x_axis.length().max(self.map.matrix3.y_axis.length()) * self.size();
+        let height = row.abs().element_sum() * here + self.inverse.translation.z.abs();
+        ROUNDINGS * f64::EPSILON * (here + sizes + height / row.length())
+    }
+
+    fn size(&self) -> f64 {
+        match self.outline {
+            Outline::Rectangle { half } => half.max_element(),
+            Outline::Disk { radius } => radius,
+            Outline::Plane => 0.0,
+        }
+    }
+
+    fn bounds(&self) -> Aabb {
+        let m = self.map.matrix3;
+        let (x, y) = (m.x_axis, m.y_axis);
+        let half = match self.outline {
+            Outline::Rectangle { half } => x.abs() * half.x + y.abs() * half.y,
+            Outline::Disk { radius } => (x * x + y * y).map(f64::sqrt) * radius,
+            Outline::Plane => {
+                // Infinite along every axis that the plane is not exactly perpendicular to.
+                let across = (x.abs() + y.abs()).map(|reach| if reach > 0.0 { f64::INFINITY } else { 0.0 });
+                return Aabb::new(self.map.translation - across, self.map.translation + across);
+            }
+        };
+        let slack = 16.0 * f64::EPSILON * (self.map.translation.abs() + half).max_element();
+        Aabb::new(self.map.translation - half, self.map.translation + half).dilated(slack)
+    }
+
+    fn area(&self) -> f64 {
+        let element = self.map.matrix3.x_axis.cross(self.map.matrix3.y_axis).length();
+        match self.outline {
+            Outline::Rectangle { half } => 4.0 * half.x * half.y * element,
+            Outline::Disk { radius } => std::f64::consts::PI * radius * radius * element,
+            Outline::Plane => f64::INFINITY,
+        }
+    }
+
+    fn sample(&self, u: [f64; 2]) -> Option<SurfacePoint> {
+        let local = match self.outline {
+            Outline::Rectangle { half } => (DVec2::from_array(u) * 2.0 - 1.0) * half,
+            Outline::Disk { radius } => {
+                let (sin, cos) = (std::f64::consts::TAU * u[1]).sin_cos();
+                DVec2::new(cos, sin) * (radius * u[0].sqrt())
+            }
+            Outline::Plane => return None,
+        };
+        Some(self.surface(self.map.transform_point3(local.extend(0.0))))
+    }
+}
+
+/// Triangles in the world.
+#[derive(Clone, Debug)]
+pub struct Triangles {
+    pub positions: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
+    uvs: Vec<DVec2>,
+    normals: Vec<DVec3>,
+    /// Sums of the areas up to and including each triangle.
+    cumulative_area: Vec<f64>,
+    bounds: Aabb,
+    magnitude: f64,
+    mirrored: bool,
+}
+
+fn from_mesh(mesh: &TriangleMesh, map: &DAffine3, inverse: &DAffine3) -> Result<SurfaceModel, &'static str> {
+    let wide = |v: &[f32; 3]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
+    let positions = mesh.positions.iter().map(wide).collect();
+    let uvs = mesh.uvs.iter().map(|uv| DVec2::new(uv[0].into(), uv[1].into())).collect();
+    let normals = mesh.normals.iter().map(wide).collect();
+    Triangles::place(positions, mesh.triangles.clone(), uvs, normals, map, inverse)
+}
+
+impl Triangles {
+    fn place(
+        mut positions: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+        uvs: Vec<DVec2>,
+        mut normals: Vec<DVec3>,
+        map: &DAffine3,
+        inverse: &DAffine3,
+    ) -> Result<SurfaceModel, &'static str> {
+        let count = positions.len();
+        if triangles.iter().flatten().any(|&i| i as usize >= count) {
+            return Err("a triangle names a vertex that does not exist");
+        }
+        if !(uvs.is_empty() || uvs.len() == count) || !(normals.is_empty() || normals.len() == count) {
+            return Err("normals or uvs are not one per vertex");
+        }
+        let normal_map = inverse.matrix3.transpose();
+        for p in &mut positions {
+            *p = map.transform_point3(*p);
+        }
+        for n in &mut normals {
+            *n = normal_map.mul_vec3(*n).normalize_or_zero();
+        }
+        if positions.iter().any(|p| !p.is_finite()) {
+            return Err("a vertex is not finite");
+        }
+        let hull = |hull: Aabb, p: &DVec3| hull.union(&Aabb::new(*p, *p));
+        let bounds = positions.iter().fold(Aabb::EMPTY, hull);
+        let magnitude = if count == 0 { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
+        let mirrored = map.matrix3.determinant() < 0.0;
+        let mut model =
+            Triangles { positions, triangles, uvs, normals, cumulative_area: vec![], bounds, magnitude, mirrored };
+        let mut sum = 0.0;
+        for i in 0..model.triangles.len() {
+            sum += 0.5 * model.cross(i).length();
+            model.cumulative_area.push(sum);
+        }
+        Ok(SurfaceModel::Triangles(model))
+    }
+
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|i| self.positions[i as usize])
+    }
+
+    fn cross(&self, triangle: usize) -> DVec3 {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(c - a)
+    }
+
+    /// Where the ray meets the triangle's plane, with weights of the second and third corner; `None` when parallel or
+    /// degenerate. The weights are outside the simplex when the ray passes beside the triangle.
+    pub fn crossing(&self, triangle: usize, origin: DVec3, dir: DVec3) -> Option<(f64, DVec2)> {
+        // Möller and Trumbore 1997.
+        let [a, b, c] = self.corners(triangle);
+        let (ab, ac, ao) = (b - a, c - a, origin - a);
+        let across = dir.cross(ac);
+        let determinant = ab.dot(across);
+        let around = ao.cross(ab);
+        let weights = DVec2::new(ao.dot(across), dir.dot(around)) / determinant;
+        let t = ac.dot(around) / determinant;
+        (t.is_finite() && weights.is_finite()).then_some((t, weights))
+    }
+
+    /// The point with these weights of the second and third corner, clamped into the triangle; shading normal beside.
+    pub fn surface(&self, triangle: usize, weights: DVec2) -> (SurfacePoint, DVec3) {
+        let mut w = weights.max(DVec2::ZERO);
+        if w.x + w.y > 1.0 {
+            w /= w.x + w.y;
+        }
+        let [a, b, c] = self.corners(triangle);
+        let (ab, ac) = (b - a, c - a);
+        let mut n = ab.cross(ac).normalize_or(DVec3::Z);
+        if self.mirrored {
+            n = -n;
+        }
+        let index = self.triangles[triangle].map(|i| i as usize);
+        let (uv, along) = if self.uvs.is_empty() {
+            (w, ab)
+        } else {
+            let [ua, ub, uc] = index.map(|i| self.uvs[i]);
+            let (du, dv) = (ub - ua, uc - ua);
+            (ua + du * w.x + dv * w.y, (ab * dv.y - ac * du.y) * du.perp_dot(dv).signum())
+        };
+        let dpdu = (along - n * n.dot(along)).try_normalize().unwrap_or_else(|| n.any_orthonormal_vector());
+        let mut ns = n;
+        if !self.normals.is_empty() {
+            let [na, nb, nc] = index.map(|i| self.normals[i]);
+            ns = (na * (1.0 - w.x - w.y) + nb * w.x + nc * w.y).normalize_or(n);
+            ns *= if ns.dot(n) < 0.0 { -1.0 } else { 1.0 };
+        }
+        let p = a + ab * w.x + ac * w.y;
+        (SurfacePoint { p, p_error: self.error(), n, uv, dpdu }, ns)
+    }
+
+    /// Distance along `dir` within which another surface coincides with a triangle.
+    pub fn tolerance(&self, triangle: usize, dir: DVec3) -> f64 {
+        COINCIDENT * self.error() / self.cross(triangle).normalize_or(dir).dot(dir).abs().max(1e-3)
+    }
+
+    /// Bound on the error of any point.
+    fn error(&self) -> f64 {
+        ROUNDINGS * f64::EPSILON * self.magnitude
+    }
+
+    fn area(&self) -> f64 {
+        self.cumulative_area.last().copied().unwrap_or(0.0)
+    }
+
+    fn sample(&self, choice: f64, u: [f64; 2]) -> Option<SurfacePoint> {
+        let wanted = choice * self.area();
+        let triangle =
+            self.cumulative_area.partition_point(|&sum| sum <= wanted).min(self.triangles.len().checked_sub(1)?);
+        // Uniform over the triangle by folding the square (Heitz 2019).
+        let weights = if u[0] + u[1] > 1.0 { DVec2::new(1.0 - u[0], 1.0 - u[1]) } else { DVec2::from_array(u) };
+        Some(self.surface(triangle, weights).0)
+    }
+}

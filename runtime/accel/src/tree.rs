@@ -1,0 +1,72 @@
+//! The oracle: every leaf crossed, the whole tree evaluated at every crossing (Roth 1982).
+
+use std::cell::RefCell;
+
+use crate::coincidence::{Event, settle};
+use crate::expression::{Expression, eval};
+use crate::solid::{SolidModel, SolidRay};
+
+/// A point where a ray crosses the boundary of a solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transition {
+    /// Parameter of the [`SolidRay`].
+    pub t: f64,
+    pub leaf: u32,
+    pub face: u8,
+    /// The ray is in the solid after it.
+    pub entering: bool,
+    /// The leaf's outward normal points into the solid: the wall of a subtraction.
+    pub flipped: bool,
+    /// The leaf is one of several with coincident faces here.
+    pub shared: bool,
+}
+
+#[derive(Default)]
+struct Scratch {
+    events: Vec<Event>,
+    states: Vec<bool>,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+/// Calls `visit` for every transition after the ray's start, in order, until it returns false. Returns whether the ray
+/// starts inside.
+pub fn transitions(solid: &SolidModel, ray: &SolidRay, mut visit: impl FnMut(Transition) -> bool) -> bool {
+    let tokens = match &solid.expression {
+        Expression::Constant(value) => return *value,
+        Expression::Tokens(tokens) => tokens,
+    };
+    SCRATCH.with_borrow_mut(|Scratch { events, states }| {
+        events.clear();
+        states.clear();
+        for (slot, leaf) in (0..).zip(&solid.leaves) {
+            let crossings = leaf.crossings(ray.origin, ray.dir);
+            states.push(crossings.inside_after(ray.start));
+            let after = crossings.iter().filter(|&(t, _)| t > ray.start);
+            events.extend(after.map(|(t, face)| Event { t, slot, face }));
+        }
+        events.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.slot.cmp(&b.slot)));
+        let value = |states: &[bool]| eval(tokens, |leaf| states[leaf as usize]);
+        let start = value(states);
+        let mut inside = start;
+        let mut rest = &events[..];
+        while let Some(first) = rest.first() {
+            let together = rest.iter().take_while(|event| event.t <= first.t + solid.tolerance).count();
+            let (cluster, later) = rest.split_at(together);
+            let (after, owner) = settle(cluster, inside, states, value);
+            if let Some(owner) = owner {
+                let Event { t, slot, face } = cluster[owner];
+                let flipped = states[slot as usize] != after;
+                let shared = cluster.len() > 1;
+                if !visit(Transition { t, leaf: slot, face, entering: after, flipped, shared }) {
+                    break;
+                }
+            }
+            inside = after;
+            rest = later;
+        }
+        start
+    })
+}
