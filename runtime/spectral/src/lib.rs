@@ -10,6 +10,7 @@ mod eval;
 mod observer;
 mod planck;
 mod sampled;
+pub mod sky;
 mod spectrum;
 pub mod srgb;
 mod uplift;
