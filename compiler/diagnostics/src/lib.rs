@@ -8,7 +8,9 @@
 pub mod codes;
 mod diagnostic;
 mod source;
+mod suggest;
 
 pub use codes::{Code, Severity};
 pub use diagnostic::{Applicability, Diagnostic, Label, Suggestion};
 pub use source::{LineColumn, SourceFile, SourceId, SourceMap, Span, Spanned};
+pub use suggest::closest;

@@ -22,4 +22,9 @@ pub trait Loader {
 
     /// Whether a data file (a mesh, say) can be read. It is read later, by the renderer.
     fn probe(&self, path: &str) -> Result<(), LoadError>;
+
+    /// The names of the files in a folder, `""` for the root script's, for messages that suggest one. Empty if unknown.
+    fn list(&self, _folder: &str) -> Vec<String> {
+        Vec::new()
+    }
 }

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use arsc_diagnostics::{Applicability, Diagnostic, SourceId, Span, codes};
+use arsc_diagnostics::{Applicability, Diagnostic, SourceId, Span, closest, codes};
 use pest::Parser;
 use pest::error::{ErrorVariant, InputLocation};
 
@@ -215,7 +215,7 @@ impl Context<'_> {
             return Slip::new(message, "not a declaration", help);
         }
         let items = ["import", "param", "let", "fn", "type", "scene", "camera", "actions", "allow"];
-        if let Some(item) = items.iter().find(|item| word.len() > 2 && one_slip_apart(word, item)) {
+        if let Some(item) = closest(word, items).filter(|item| *item != word) {
             return Slip::replacing(message, "misspelt?", &format!("did you mean `{item}`?"), (0, word.len(), item));
         }
         if self.slice[word.len()..].trim_start().starts_with('=') && !word.is_empty() {
@@ -348,19 +348,5 @@ fn token(text: &str) -> &str {
         Some('/') if text.starts_with("//") => "",
         Some(_) if !word.is_empty() && text.starts_with(word) => word,
         Some(c) => &text[..c.len_utf8()],
-    }
-}
-
-/// Whether one word is the other with one letter changed, missing, added, or two neighbours swapped.
-fn one_slip_apart(a: &str, b: &str) -> bool {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
-    let prefix = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
-    let (a, b) = (&a[prefix..], &b[prefix..]);
-    let suffix = a.iter().rev().zip(b.iter().rev()).take_while(|(x, y)| x == y).count();
-    let (a, b) = (&a[..a.len() - suffix], &b[..b.len() - suffix]);
-    match (a, b) {
-        ([_], [_]) | ([_], []) | ([], [_]) => true,
-        ([x, y], [z, w]) => x == w && y == z,
-        _ => false,
     }
 }

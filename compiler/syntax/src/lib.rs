@@ -13,6 +13,7 @@ mod build;
 mod diagnose;
 mod grammar;
 mod scan;
+pub mod visit;
 
 use arsc_diagnostics::{Diagnostic, SourceId};
 

@@ -1,13 +1,15 @@
 //! The registry of diagnostic codes: one table per stage, each code once.
 //!
-//! Numbers: `E00xx` syntax, `E01xx` names and types, `E02xx` values, limits and modules, `E03xx` action
-//! sequences, `E04xx` the scene as a whole, `E09xx` not implemented yet; `W01xx` lints of the text, `W02xx` lints of the geometry and light.
+//! Numbers: `E00xx` syntax, `E01xx` names and types, `E02xx` values and limits, `E03xx` action sequences, `E04xx` the
+//! scene as a whole, `E05xx` modules, `E09xx` not implemented yet; `W00xx` lints on lint levels, `W01xx` lints of the
+//! text, `W02xx` lints of the geometry and light.
 //! A lint's name is what `allow(…)`, `--deny` and `--warn` take.
 
 use std::fmt;
 
 #[macro_use]
 mod table;
+pub mod driver;
 pub mod geometry;
 pub mod sema;
 pub mod syntax;
@@ -80,7 +82,7 @@ impl fmt::Display for Code {
 
 /// Every registered code, in the order of the tables.
 pub fn all() -> impl Iterator<Item = Code> {
-    syntax::ALL.iter().chain(sema::ALL).chain(geometry::ALL).copied()
+    syntax::ALL.iter().chain(driver::ALL).chain(sema::ALL).chain(geometry::ALL).copied()
 }
 
 /// The code with this id (`E0101`) or lint name (`unused_name`).
