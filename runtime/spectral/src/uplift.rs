@@ -123,7 +123,7 @@ mod tests {
             let rgb = [i / 81, i / 9 % 9, i % 9].map(|k| k as f64 / 8.0);
             let back = round_trip(rgb);
             let error = (0..3).map(|c| (back[c] - rgb[c]).abs()).fold(0.0, f64::max);
-            if !(error <= worst.0) {
+            if error.is_nan() || error > worst.0 {
                 worst = (error, rgb);
             }
         }

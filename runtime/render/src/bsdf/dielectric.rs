@@ -1,0 +1,50 @@
+//! Smooth interface between vacuum outside (where z is positive) and a transparent medium inside.
+//!
+//! Reflection is chosen with the Fresnel reflectance of the hero wavelength. The other wavelengths of the path would
+//! reflect into the same direction, so they stay, each with its own probability; they refract into the same direction
+//! only if their index is the same. Refraction with dispersion therefore leaves the hero alone.
+
+use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
+use glam::DVec3;
+
+use super::BsdfSample;
+use crate::fresnel;
+
+/// Limits of the index; a medium of index 1 is invisible.
+const MIN_INDEX: f32 = 1e-2;
+const MAX_INDEX: f32 = 1e2;
+
+#[derive(Clone, Debug)]
+pub struct Dielectric {
+    ior: DenseSpectrum,
+}
+
+impl Dielectric {
+    pub(super) fn new(ior: &Spectrum) -> Dielectric {
+        Dielectric { ior: DenseSpectrum::new(ior).clamped(MIN_INDEX, MAX_INDEX) }
+    }
+
+    #[inline]
+    pub(super) fn sample(&self, wo: DVec3, u_lobe: f64, wavelengths: &SampledWavelengths) -> Option<BsdfSample> {
+        if wo.z == 0.0 {
+            return None;
+        }
+        let cos_o = wo.z.abs().min(1.0);
+        let ior = self.ior.sample(wavelengths);
+        let relative = |index: f32| if wo.z > 0.0 { f64::from(index) } else { 1.0 / f64::from(index) };
+        let eta = relative(ior.hero());
+        let (reflectance, cos_t) = fresnel::dielectric(cos_o, eta);
+        if u_lobe < reflectance {
+            let mut sample = BsdfSample::specular_reflection(wo, SampledSpectrum::ONE);
+            if !ior.is_flat() {
+                let ratio = ior.map(|index| (fresnel::dielectric(cos_o, relative(index)).0 / reflectance) as f32);
+                (sample.weight, sample.path_pdf) = (ratio, ratio);
+            }
+            return Some(sample);
+        }
+        let wi = DVec3::new(-wo.x / eta, -wo.y / eta, -cos_t.copysign(wo.z));
+        let remaining = if ior.is_flat() { SampledSpectrum::ONE } else { SampledSpectrum::ONE.hero_only() };
+        let weight = remaining * (1.0 / (eta * eta)) as f32;
+        Some(BsdfSample { wi, weight, path_pdf: remaining, pdf: 1.0, specular: true, eta })
+    }
+}

@@ -1,0 +1,38 @@
+//! Emission of surfaces.
+
+use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
+
+/// Lambertian emission: the same radiance in all directions of the side of the geometric normal, or of both.
+#[derive(Clone, Debug)]
+pub struct AreaEmitter {
+    radiance: DenseSpectrum,
+    two_sided: bool,
+}
+
+impl AreaEmitter {
+    /// `radiance` in W m^-2 sr^-1 nm^-1, negative values count as zero. `two_sided` is for open surfaces: a solid
+    /// emits outwards.
+    pub fn new(radiance: &Spectrum, two_sided: bool) -> AreaEmitter {
+        AreaEmitter { radiance: DenseSpectrum::new(radiance).clamped(0.0, f32::MAX), two_sided }
+    }
+
+    /// Radiance towards a direction with the given cosine to the geometric normal.
+    #[inline]
+    pub fn radiance(&self, cos: f64, wavelengths: &SampledWavelengths) -> SampledSpectrum {
+        if cos > 0.0 || (self.two_sided && cos < 0.0) {
+            self.radiance.sample(wavelengths)
+        } else {
+            SampledSpectrum::ZERO
+        }
+    }
+
+    pub fn two_sided(&self) -> bool {
+        self.two_sided
+    }
+
+    /// Power per area over the rendered range, W m^-2.
+    pub fn exitance(&self) -> f64 {
+        let sides = if self.two_sided { 2.0 } else { 1.0 };
+        std::f64::consts::PI * sides * self.radiance.integral()
+    }
+}

@@ -1,0 +1,295 @@
+//! The film: what the samples of an image add up to.
+//!
+//! Per pixel: for every spectral band the sum of weighted radiance estimates and the sum of the estimates' weights, and
+//! the sum of CIE XYZ with the number of samples. A path gives four estimates, one per wavelength; each enters the
+//! band that it falls into. Radiance of a band is the ratio of its two sums (so the random number of samples per band
+//! cancels), XYZ is sum over count. Sums of films of disjoint samples add: films merge.
+//! Pixels are stored tile by tile, so that threads own what they write. Values that are not finite or negative are
+//! counted and left out.
+
+use arsc_image::SpectralImage;
+use arsc_spectral::{
+    LAMBDA_MAX_NM, LAMBDA_MIN_NM, LUMINOUS_EFFICACY, SampledSpectrum, SampledWavelengths, matching_functions,
+};
+
+/// Side of a tile in pixels.
+pub const TILE: u32 = 16;
+
+/// Equal bands over a range of wavelengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bands {
+    pub min_nm: f64,
+    pub width_nm: f64,
+    pub count: usize,
+}
+
+impl Default for Bands {
+    /// The rendered range in steps of 10 nm.
+    fn default() -> Bands {
+        Bands { min_nm: LAMBDA_MIN_NM, width_nm: 10.0, count: ((LAMBDA_MAX_NM - LAMBDA_MIN_NM) / 10.0) as usize }
+    }
+}
+
+impl Bands {
+    #[inline]
+    fn index(&self, lambda_nm: f32) -> Option<usize> {
+        let at = (lambda_nm - self.min_nm as f32) / self.width_nm as f32;
+        // The end of the last band belongs to it.
+        (at >= 0.0 && at <= self.count as f32).then(|| (at as usize).min(self.count - 1))
+    }
+
+    pub fn edges_nm(&self) -> Vec<f64> {
+        (0..=self.count).map(|i| self.min_nm + i as f64 * self.width_nm).collect()
+    }
+}
+
+/// Sums of a rectangle of pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tile {
+    pub x0: u32,
+    pub y0: u32,
+    pub width: u32,
+    pub height: u32,
+    bands: Bands,
+    /// `[pixel][band]`: weighted estimate, weight.
+    sums: Vec<[f32; 2]>,
+    xyz: Vec<[f64; 3]>,
+    samples: Vec<u32>,
+    rejected: u64,
+}
+
+impl Tile {
+    fn new(x0: u32, y0: u32, width: u32, height: u32, bands: Bands) -> Tile {
+        let pixels = (width * height) as usize;
+        Tile {
+            x0,
+            y0,
+            width,
+            height,
+            bands,
+            sums: vec![[0.0; 2]; pixels * bands.count],
+            xyz: vec![[0.0; 3]; pixels],
+            samples: vec![0; pixels],
+            rejected: 0,
+        }
+    }
+
+    /// Adds a path's radiance to a pixel given by its position in the tile. `weight` is the filter's, with mean 1.
+    #[inline]
+    pub fn add(&mut self, x: u32, y: u32, wavelengths: &SampledWavelengths, radiance: SampledSpectrum, weight: f64) {
+        let radiance = if radiance.is_valid() {
+            radiance
+        } else {
+            self.rejected += 1;
+            radiance.map(|r| if r >= 0.0 && r < f32::INFINITY { r } else { 0.0 })
+        };
+        let pixel = (y * self.width + x) as usize;
+        let row = pixel * self.bands.count;
+        let inverse_pdf = 1.0 / wavelengths.pdf;
+        let estimates = (radiance.0 * inverse_pdf * weight as f32).to_array();
+        let (lambda, knots) = (wavelengths.lambda_nm.to_array(), wavelengths.knots());
+        let inverse_pdf = inverse_pdf.to_array();
+        let matching = matching_functions();
+        for i in 0..4 {
+            if let Some(band) = self.bands.index(lambda[i]) {
+                let [sum, sum_of_weights] = &mut self.sums[row + band];
+                *sum += estimates[i];
+                *sum_of_weights += inverse_pdf[i];
+            }
+            let [x, y, z] = matching[knots[i]];
+            let estimate = f64::from(estimates[i]);
+            let total = &mut self.xyz[pixel];
+            *total = [total[0] + x * estimate, total[1] + y * estimate, total[2] + z * estimate];
+        }
+        self.samples[pixel] += 1;
+    }
+
+    /// Samples of the pixel with the most.
+    pub fn max_samples(&self) -> u32 {
+        self.samples.iter().copied().max().unwrap_or(0)
+    }
+}
+
+/// An image's sums.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    resolution: [u32; 2],
+    bands: Bands,
+    pub(crate) tiles: Vec<Tile>,
+}
+
+/// Two films whose pixels or bands do not correspond.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FilmMismatch;
+
+impl std::fmt::Display for FilmMismatch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("films of different size, crop or bands cannot be merged")
+    }
+}
+
+impl std::error::Error for FilmMismatch {}
+
+impl Film {
+    /// An empty film of `resolution` pixels; only those of `crop` (x0, y0, x1, y1, end exclusive) take memory.
+    pub fn new(resolution: [u32; 2], crop: Option<[u32; 4]>, bands: Bands) -> Film {
+        let [x0, y0, x1, y1] = crop.unwrap_or([0, 0, resolution[0], resolution[1]]);
+        let (x1, y1) = (x1.min(resolution[0]), y1.min(resolution[1]));
+        let columns = (x0..x1).step_by(TILE as usize);
+        let tiles = (y0..y1)
+            .step_by(TILE as usize)
+            .flat_map(|y| columns.clone().map(move |x| (x, y)))
+            .map(|(x, y)| Tile::new(x, y, TILE.min(x1 - x), TILE.min(y1 - y), bands))
+            .collect();
+        Film { resolution, bands, tiles }
+    }
+
+    pub fn resolution(&self) -> [u32; 2] {
+        self.resolution
+    }
+
+    /// Adds the sums of a film of other samples.
+    pub fn merge(&mut self, other: &Film) -> Result<(), FilmMismatch> {
+        let place = |t: &Tile| (t.x0, t.y0, t.width, t.height);
+        let same = self.resolution == other.resolution && self.bands == other.bands;
+        if !same || !self.tiles.iter().map(place).eq(other.tiles.iter().map(place)) {
+            return Err(FilmMismatch);
+        }
+        for (tile, more) in self.tiles.iter_mut().zip(&other.tiles) {
+            for (sum, more) in tile.sums.iter_mut().zip(&more.sums) {
+                *sum = [sum[0] + more[0], sum[1] + more[1]];
+            }
+            for (xyz, more) in tile.xyz.iter_mut().zip(&more.xyz) {
+                *xyz = [xyz[0] + more[0], xyz[1] + more[1], xyz[2] + more[2]];
+            }
+            for (samples, more) in tile.samples.iter_mut().zip(&more.samples) {
+                *samples += more;
+            }
+            tile.rejected += more.rejected;
+        }
+        Ok(())
+    }
+
+    /// Samples that were not finite or negative and were left out.
+    pub fn rejected(&self) -> u64 {
+        self.tiles.iter().map(|tile| tile.rejected).sum()
+    }
+
+    /// Camera paths so far.
+    pub fn paths(&self) -> u64 {
+        self.tiles.iter().flat_map(|tile| &tile.samples).map(|n| u64::from(*n)).sum()
+    }
+
+    /// Smallest and largest number of samples of the pixels that the film covers.
+    pub fn samples_per_pixel(&self) -> (u32, u32) {
+        let counts = || self.tiles.iter().flat_map(|tile| tile.samples.iter().copied());
+        (counts().min().unwrap_or(0), counts().max().unwrap_or(0))
+    }
+
+    /// The picture. Pixels without samples are black. A band that no sample has hit yet, as happens below some
+    /// sixteen samples, is interpolated linearly between its neighbours.
+    pub fn to_image(&self) -> SpectralImage {
+        let (width, height) = (self.resolution[0] as usize, self.resolution[1] as usize);
+        let n = self.bands.count;
+        let mut radiance = vec![0.0; width * height * n];
+        let mut xyz = vec![[0.0; 3]; width * height];
+        for tile in &self.tiles {
+            for pixel in 0..tile.samples.len() {
+                let (x, y) = (pixel % tile.width as usize, pixel / tile.width as usize);
+                let at = (tile.y0 as usize + y) * width + tile.x0 as usize + x;
+                fill_bands(&tile.sums[pixel * n..(pixel + 1) * n], &mut radiance[at * n..(at + 1) * n]);
+                let k = 0.25 * LUMINOUS_EFFICACY / f64::from(tile.samples[pixel].max(1));
+                xyz[at] = tile.xyz[pixel].map(|sum| (sum * k) as f32);
+            }
+        }
+        SpectralImage { width, height, band_edges_nm: self.bands.edges_nm(), radiance, xyz, metadata: Vec::new() }
+    }
+}
+
+/// Ratios of the sums; empty bands between filled ones are interpolated, at the ends repeated.
+fn fill_bands(sums: &[[f32; 2]], radiance: &mut [f32]) {
+    let value = |i: usize| sums[i][0] / sums[i][1];
+    let mut last: Option<usize> = None;
+    for i in (0..sums.len()).filter(|i| sums[*i][1] > 0.0) {
+        radiance[i] = value(i);
+        let from = last.map_or(0, |last| last + 1);
+        for gap in from..i {
+            radiance[gap] = match last {
+                None => value(i),
+                Some(last) => value(last) + (value(i) - value(last)) * (gap - last) as f32 / (i - last) as f32,
+            };
+        }
+        last = Some(i);
+    }
+    if let Some(last) = last {
+        radiance[last + 1..].fill(value(last));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn constant_film(resolution: [u32; 2], samples: u32, value: f32) -> Film {
+        let mut film = Film::new(resolution, None, Bands::default());
+        for tile in &mut film.tiles {
+            for i in 0..samples {
+                let wavelengths = SampledWavelengths::sample((f64::from(i) + 0.5) / f64::from(samples) * 0.25);
+                tile.add(0, 0, &wavelengths, SampledSpectrum::splat(value), 1.0);
+            }
+        }
+        film
+    }
+
+    /// A constant spectrum is exact in every band, however few the samples; Y is 683 times the integral of y.
+    #[test]
+    fn constant_spectra_are_exact() {
+        for samples in [1, 4, 256] {
+            let image = constant_film([1, 1], samples, 2.0).to_image();
+            assert_eq!(image.band_edges_nm.len(), 48);
+            assert!(image.radiance.iter().all(|r| (r - 2.0).abs() < 1e-5), "{samples} samples: {:?}", image.radiance);
+            if samples == 256 {
+                let expected = 2.0 * 683.0 * 106.8569;
+                assert!((f64::from(image.xyz[0][1]) / expected - 1.0).abs() < 1e-3, "{}", image.xyz[0][1]);
+            }
+        }
+    }
+
+    #[test]
+    fn merging_is_adding() {
+        let mut a = constant_film([1, 1], 8, 1.0);
+        a.merge(&constant_film([1, 1], 8, 3.0)).unwrap();
+        assert_eq!(a.paths(), 16);
+        assert!(a.to_image().radiance.iter().all(|r| (r - 2.0).abs() < 1e-5));
+        assert_eq!(a.merge(&constant_film([2, 1], 8, 3.0)), Err(FilmMismatch));
+    }
+
+    #[test]
+    fn nonsense_is_counted_and_left_out() {
+        let mut film = Film::new([1, 1], None, Bands::default());
+        for bad in [f32::NAN, f32::INFINITY, -1.0] {
+            film.tiles[0].add(0, 0, &SampledWavelengths::sample(0.3), SampledSpectrum::splat(bad), 1.0);
+        }
+        assert_eq!(film.rejected(), 3);
+        assert!(film.to_image().radiance.iter().all(|r| *r == 0.0));
+        assert_eq!(film.to_image().xyz, [[0.0; 3]]);
+    }
+
+    #[test]
+    fn crops_cover_their_pixels_and_no_others() {
+        let mut film = Film::new([40, 30], Some([5, 7, 39, 25]), Bands::default());
+        for tile in &mut film.tiles {
+            let (width, height) = (tile.width, tile.height);
+            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                tile.add(x, y, &SampledWavelengths::sample(0.1), SampledSpectrum::ONE, 1.0);
+            }
+        }
+        let image = film.to_image();
+        for (i, pixel) in image.radiance.chunks(47).enumerate() {
+            let inside = (5..39).contains(&(i % 40)) && (7..25).contains(&(i / 40));
+            assert_eq!(pixel[20] > 0.0, inside, "pixel {i}");
+        }
+        assert_eq!(film.samples_per_pixel(), (1, 1));
+        assert_eq!(Film::new([4, 4], Some([9, 9, 2, 2]), Bands::default()).paths(), 0);
+    }
+}

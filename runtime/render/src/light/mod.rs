@@ -1,0 +1,101 @@
+//! Lights that are no geometry, and environments.
+//!
+//! A light sample states its direction, its density per steradian, and the radiance (for point and distant lights, whose
+//! density is a Dirac distribution: the irradiance across the beam, with density 1). Directions point from the
+//! illuminated point to the light.
+
+mod alias;
+mod constant;
+mod distant;
+mod point;
+
+use arsc_spectral::{SampledSpectrum, SampledWavelengths, Spectrum};
+use glam::DVec3;
+
+pub use alias::AliasTable;
+pub use constant::ConstantEnvironment;
+pub use distant::DistantLight;
+pub use point::PointLight;
+
+/// A light without extent.
+#[derive(Clone, Debug)]
+pub enum Light {
+    Point(PointLight),
+    Distant(DistantLight),
+}
+
+impl Light {
+    /// `intensity` in W sr^-1 nm^-1.
+    pub fn point(position: DVec3, intensity: &Spectrum) -> Light {
+        Light::Point(PointLight::new(position, intensity))
+    }
+
+    /// Light that travels along `direction` (any length but zero); `irradiance` across the beam in W m^-2 nm^-1.
+    pub fn distant(direction: DVec3, irradiance: &Spectrum) -> Light {
+        Light::Distant(DistantLight::new(direction, irradiance))
+    }
+
+    /// Power into a scene with a bounding sphere of this radius, W.
+    pub(crate) fn power(&self, scene_radius: f64) -> f64 {
+        match self {
+            Light::Point(light) => light.power(),
+            Light::Distant(light) => light.power(scene_radius),
+        }
+    }
+}
+
+/// Light from everywhere beyond the scene.
+#[derive(Clone, Debug)]
+pub enum Environment {
+    Constant(ConstantEnvironment),
+}
+
+/// A direction to an environment.
+#[derive(Clone, Copy, Debug)]
+pub struct EnvironmentSample {
+    pub wi: DVec3,
+    pub radiance: SampledSpectrum,
+    /// Per steradian.
+    pub pdf: f64,
+}
+
+impl Environment {
+    /// The same radiance from everywhere, W m^-2 sr^-1 nm^-1.
+    pub fn constant(radiance: &Spectrum) -> Environment {
+        Environment::Constant(ConstantEnvironment::new(radiance))
+    }
+
+    /// Radiance that arrives from the direction `wi`.
+    #[inline]
+    pub fn radiance(&self, wi: DVec3, wavelengths: &SampledWavelengths) -> SampledSpectrum {
+        let _ = wi;
+        match self {
+            Environment::Constant(constant) => constant.radiance(wavelengths),
+        }
+    }
+
+    /// A direction with density roughly in proportion to radiance.
+    #[inline]
+    pub fn sample(&self, u: [f64; 2], wavelengths: &SampledWavelengths) -> Option<EnvironmentSample> {
+        match self {
+            Environment::Constant(constant) => Some(constant.sample(u, wavelengths)),
+        }
+    }
+
+    /// Density per steradian with which [`Environment::sample`] gives `wi`.
+    #[inline]
+    pub fn pdf(&self, wi: DVec3) -> f64 {
+        let _ = wi;
+        match self {
+            Environment::Constant(_) => crate::warp::UNIFORM_SPHERE_PDF,
+        }
+    }
+
+    /// Power into a scene with a bounding sphere of this radius, W.
+    pub(crate) fn power(&self, scene_radius: f64) -> f64 {
+        let area = std::f64::consts::PI * scene_radius * scene_radius;
+        match self {
+            Environment::Constant(constant) => area * constant.fluence(),
+        }
+    }
+}

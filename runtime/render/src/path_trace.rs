@@ -1,0 +1,99 @@
+//! The loop over the image.
+//!
+//! Passes of growing length go over all tiles; within a pass the tiles are shared among the threads of the current
+//! rayon pool, each owning the sums it writes. A render that is cancelled between tiles leaves pixels whose sample
+//! counts differ by one pass at most. A sample is a function of (seed, pixel, number): the film does not
+//! depend on threads, nor on how the samples are divided into passes.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use arsc_spectral::SampledWavelengths;
+
+use crate::camera::Camera;
+use crate::film::{Bands, Film, Tile};
+use crate::integrator::incident_radiance;
+use crate::sampler::Sampler;
+use crate::world::World;
+
+/// What `path_trace` is asked for.
+#[derive(Clone, Debug)]
+pub struct PathTraceSettings {
+    /// Camera paths per pixel.
+    pub samples: u32,
+    /// Largest number of scattering events of a path: 0 shows lights alone, 1 adds direct light.
+    pub max_depth: u32,
+    pub seed: u64,
+    /// Pixels x0, y0, x1, y1 (end exclusive) of the full image; the rest stays empty.
+    pub crop: Option<[u32; 4]>,
+    pub bands: Bands,
+}
+
+impl Default for PathTraceSettings {
+    fn default() -> PathTraceSettings {
+        PathTraceSettings { samples: 64, max_depth: 20, seed: 0, crop: None, bands: Bands::default() }
+    }
+}
+
+/// How a render reports and is stopped. Called from worker threads.
+pub trait Progress: Sync {
+    /// So many camera paths more are done.
+    fn advance(&self, paths: u64);
+    /// Asked between tiles and passes; when true the render ends early with what it has.
+    fn cancelled(&self) -> bool;
+}
+
+/// No report, no end before the end.
+impl Progress for () {
+    fn advance(&self, _: u64) {}
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Samples per pixel of the longest pass.
+const LONGEST_PASS: u32 = 16;
+
+/// Pair of sample dimensions for the position in the pixel; the next one is for the wavelengths.
+const PIXEL_POSITION: u32 = 0;
+const WAVELENGTHS: u32 = 1;
+
+/// Renders on the threads of the current rayon pool.
+pub fn path_trace(world: &World, camera: &Camera, settings: &PathTraceSettings, progress: &dyn Progress) -> Film {
+    let mut film = Film::new(camera.resolution(), settings.crop, settings.bands);
+    let mut done = 0;
+    while done < settings.samples && !progress.cancelled() {
+        let pass = done.clamp(1, LONGEST_PASS).min(settings.samples - done);
+        film.tiles.par_iter_mut().for_each(|tile| {
+            if !progress.cancelled() {
+                trace_tile(world, camera, settings, done..done + pass, tile);
+                progress.advance(u64::from(tile.width) * u64::from(tile.height) * u64::from(pass));
+            }
+        });
+        done += pass;
+    }
+    film
+}
+
+fn trace_tile(
+    world: &World,
+    camera: &Camera,
+    settings: &PathTraceSettings,
+    samples: std::ops::Range<u32>,
+    tile: &mut Tile,
+) {
+    for y in 0..tile.height {
+        for x in 0..tile.width {
+            let pixel = [tile.x0 + x, tile.y0 + y];
+            for index in samples.clone() {
+                let sampler = Sampler::new(settings.seed, pixel, index);
+                let wavelengths = SampledWavelengths::sample(sampler.single(WAVELENGTHS));
+                let position = camera.filter.sample(sampler.pair(PIXEL_POSITION));
+                let center = DVec2::new(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
+                let ray = camera.ray(center + position.offset);
+                let radiance = incident_radiance(world, ray, &wavelengths, &sampler, settings.max_depth);
+                tile.add(x, y, &wavelengths, radiance, position.weight);
+            }
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Everything that light meets, ready for rendering.
+//!
+//! [`World::new`] finds the light sources: emissive parts of the geometry, point and distant lights, environments. One is
+//! chosen per light sample, with a probability that follows its power over the rendered range; [`FLOOR`] of the
+//! choices are uniform, so that a dim light close by is not starved. Emissive parts of unbounded area are hit by
+//! scattered rays only.
+
+use arsc_accel::{Hit, PartId, Scene};
+
+use crate::bsdf::Bsdf;
+use crate::emitter::AreaEmitter;
+use crate::light::{AliasTable, Environment, Light};
+
+/// Scattering and emission of one material; indexed by [`arsc_accel::MaterialIndex`].
+#[derive(Clone, Debug, Default)]
+pub struct Material {
+    pub bsdf: Bsdf,
+    pub emitter: Option<AreaEmitter>,
+}
+
+/// Share of the light samples that is spread evenly over the lights.
+const FLOOR: f64 = 0.05;
+
+/// Radius that stands for that of an unbounded scene when powers are compared.
+const UNBOUNDED_RADIUS: f64 = 100.0;
+
+/// A light as light sampling sees it; indices into the world's tables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightSource {
+    Part { part: PartId, material: u32 },
+    Light(u32),
+    Environment(u32),
+}
+
+/// Geometry, materials and lights.
+pub struct World {
+    pub geometry: Scene,
+    materials: Vec<Material>,
+    lights: Vec<Light>,
+    environments: Vec<Environment>,
+    sources: Vec<LightSource>,
+    powers: Vec<f64>,
+    choice: AliasTable,
+    /// Probability that light sampling chooses a part; by [`PartId`].
+    part_probability: Vec<f64>,
+    environment_probability: Vec<f64>,
+}
+
+impl World {
+    /// `materials` is indexed by [`arsc_accel::MaterialIndex`]; a part whose material is missing gets the default.
+    pub fn new(
+        geometry: Scene,
+        mut materials: Vec<Material>,
+        lights: Vec<Light>,
+        environments: Vec<Environment>,
+    ) -> World {
+        let needed = geometry.parts().iter().map(|part| part.material.0 as usize + 1).max().unwrap_or(0);
+        materials.resize_with(materials.len().max(needed), Material::default);
+        let mut world = World {
+            part_probability: vec![0.0; geometry.parts().len()],
+            environment_probability: vec![0.0; environments.len()],
+            geometry,
+            materials,
+            lights,
+            environments,
+            sources: Vec::new(),
+            powers: Vec::new(),
+            choice: AliasTable::default(),
+        };
+        world.collect_sources();
+        world.choose_probabilities();
+        world
+    }
+
+    fn collect_sources(&mut self) {
+        for (i, part) in self.geometry.parts().iter().enumerate() {
+            if let Some(emitter) = &self.materials[part.material.0 as usize].emitter {
+                let power = emitter.exitance() * self.geometry.part_area(PartId(i as u32));
+                if power > 0.0 && power.is_finite() {
+                    self.sources.push(LightSource::Part { part: PartId(i as u32), material: part.material.0 });
+                    self.powers.push(power);
+                }
+            }
+        }
+        let radius = self.scene_radius();
+        for (i, light) in self.lights.iter().enumerate() {
+            self.sources.push(LightSource::Light(i as u32));
+            self.powers.push(light.power(radius));
+        }
+        for (i, environment) in self.environments.iter().enumerate() {
+            self.sources.push(LightSource::Environment(i as u32));
+            self.powers.push(environment.power(radius));
+        }
+    }
+
+    fn choose_probabilities(&mut self) {
+        let total: f64 = self.powers.iter().sum();
+        let n = self.sources.len() as f64;
+        let weights: Vec<f64> = self.powers.iter().map(|p| (1.0 - FLOOR) * p + FLOOR * total / n).collect();
+        self.choice = AliasTable::new(&weights);
+        for (i, source) in self.sources.iter().enumerate() {
+            let probability = self.choice.probability(i);
+            match source {
+                LightSource::Part { part, .. } => self.part_probability[part.0 as usize] = probability,
+                LightSource::Environment(e) => self.environment_probability[*e as usize] = probability,
+                LightSource::Light(_) => {}
+            }
+        }
+    }
+
+    /// Radius of a sphere about the bounds of the geometry.
+    fn scene_radius(&self) -> f64 {
+        let bounds = self.geometry.bounds();
+        let radius = if bounds.is_empty() { 0.0 } else { 0.5 * bounds.extent().length() };
+        if radius.is_finite() { radius } else { UNBOUNDED_RADIUS }
+    }
+
+    /// The lights that light sampling chooses from, with their powers in W over the rendered range.
+    pub fn light_sources(&self) -> impl Iterator<Item = (LightSource, f64)> + '_ {
+        self.sources.iter().copied().zip(self.powers.iter().copied())
+    }
+
+    #[inline]
+    pub fn material(&self, hit: &Hit) -> &Material {
+        &self.materials[hit.material.0 as usize]
+    }
+
+    #[inline]
+    pub(crate) fn emitter(&self, material: u32) -> Option<&AreaEmitter> {
+        self.materials[material as usize].emitter.as_ref()
+    }
+
+    #[inline]
+    pub(crate) fn light(&self, index: u32) -> &Light {
+        &self.lights[index as usize]
+    }
+
+    #[inline]
+    pub(crate) fn environment(&self, index: u32) -> &Environment {
+        &self.environments[index as usize]
+    }
+
+    #[inline]
+    pub(crate) fn environments(&self) -> impl Iterator<Item = (&Environment, f64)> {
+        self.environments.iter().zip(self.environment_probability.iter().copied())
+    }
+
+    /// A light, its probability, and what is left of `u`. `None` without lights.
+    #[inline]
+    pub(crate) fn choose_light(&self, u: f64) -> Option<(LightSource, f64, f64)> {
+        if self.choice.is_empty() {
+            return None;
+        }
+        let (index, rest) = self.choice.sample(u);
+        Some((self.sources[index], self.choice.probability(index), rest))
+    }
+
+    /// Probability that light sampling chooses the part that was hit.
+    #[inline]
+    pub(crate) fn part_probability(&self, hit: &Hit) -> f64 {
+        self.part_probability[hit.part.0 as usize]
+    }
+}
