@@ -6,17 +6,20 @@
 
 mod args;
 mod bug;
+mod compile;
 mod exit;
+mod failure;
 mod files;
+mod host;
 mod interrupt;
+mod probe;
 mod progress;
+mod render;
+mod report;
 
 use clap::{Parser, Subcommand};
 
 use exit::Exit;
-
-/// Stack of the working thread, bytes.
-const STACK: usize = 512 << 20;
 
 #[derive(Parser)]
 #[command(name = "arsc", version, about = "Compiles and renders .arsl scene scripts", after_help = exit::HELP)]
@@ -26,14 +29,20 @@ struct Cli {
 }
 
 #[derive(Subcommand)]
-enum Command {}
+enum Command {
+    Render(render::Args),
+    Probe(probe::Args),
+}
 
 fn main() -> std::process::ExitCode {
     let cli = Cli::parse();
-    let exit = bug::guarded(STACK, move || run(cli));
+    let exit = bug::guarded(arsc_driver::STACK, move || run(cli));
     exit.into()
 }
 
 fn run(cli: Cli) -> Exit {
-    match cli.command {}
+    match cli.command {
+        Command::Render(args) => render::run(&args),
+        Command::Probe(args) => probe::run(&args),
+    }
 }

@@ -8,9 +8,11 @@
 //! `arsc:radianceUnits` says), `arsc:bandEdges`, and the image's metadata as `arsc:<name>`.
 //! ZIP in blocks of 16 lines, lines in increasing order, attributes sorted by name.
 
+use arsc_spectral::srgb::rgb_from_xyz;
 use exr::prelude::*;
+use glam::{DMat3, Vec3};
 
-use crate::{ImageError, SpectralImage, UNIT_LUMINANCE, exr_header, linear_srgb_from_xyz};
+use crate::{ImageError, SpectralImage, UNIT_LUMINANCE, exr_header};
 
 /// The bytes of a spectral OpenEXR file.
 pub fn encode_exr(image: &SpectralImage) -> std::result::Result<Vec<u8>, ImageError> {
@@ -36,10 +38,11 @@ fn channels(image: &SpectralImage) -> Vec<AnyChannel<FlatSamples>> {
             channel(&band_name(image.band_center_nm(band)), samples)
         })
         .collect();
-    let rgb: Vec<[f64; 3]> =
-        image.xyz.iter().map(|xyz| linear_srgb_from_xyz(xyz.map(|v| f64::from(v) / UNIT_LUMINANCE))).collect();
+    let rgb_from_xyz: DMat3 = rgb_from_xyz() * UNIT_LUMINANCE.recip();
+    let rgb: Vec<[f32; 3]> =
+        image.xyz.iter().map(|&xyz| (rgb_from_xyz * Vec3::from_array(xyz).as_dvec3()).as_vec3().to_array()).collect();
     for (i, name) in ["R", "G", "B"].into_iter().enumerate() {
-        channels.push(channel(name, rgb.iter().map(|p| p[i] as f32).collect()));
+        channels.push(channel(name, rgb.iter().map(|p| p[i]).collect()));
     }
     for (i, name) in ["XYZ.X", "XYZ.Y", "XYZ.Z"].into_iter().enumerate() {
         channels.push(channel(name, image.xyz.iter().map(|p| p[i]).collect()));

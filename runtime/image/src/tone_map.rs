@@ -9,7 +9,10 @@
 //!    component alone, so that bright colours pale gently.
 //! 4. The sRGB transfer function and rounding to 8 bit.
 
-use crate::{DisplayImage, ImageError, SpectralImage, UNIT_LUMINANCE, linear_srgb_from_xyz, srgb_encode};
+use arsc_spectral::srgb;
+use glam::{DMat3, DVec3, Vec3};
+
+use crate::{DisplayImage, ImageError, SpectralImage, UNIT_LUMINANCE};
 
 /// Where highlights begin to roll off.
 pub const KNEE: f64 = 0.75;
@@ -34,7 +37,9 @@ pub fn tone_map(image: &SpectralImage, exposure: Exposure) -> Result<DisplayImag
         Exposure::Ev(ev) => ev,
     };
     let scale = ev.exp2() / UNIT_LUMINANCE;
-    let rgb = image.xyz.iter().map(|xyz| display_pixel(xyz.map(|v| f64::from(v) * scale))).collect();
+    let rgb_from_xyz = srgb::rgb_from_xyz();
+    let pixel = |&xyz: &[f32; 3]| display_pixel(Vec3::from_array(xyz).as_dvec3() * scale, &rgb_from_xyz);
+    let rgb = image.xyz.iter().map(pixel).collect();
     let mut metadata = image.metadata.clone();
     metadata.push(("exposure_ev".into(), format!("{ev:.3}")));
     Ok(DisplayImage { width: image.width, height: image.height, rgb, metadata })
@@ -50,24 +55,24 @@ fn automatic_ev(xyz: &[[f32; 3]]) -> f64 {
     if count == 0 { 0.0 } else { KEY.log2() - (sum / count as f64 - UNIT_LUMINANCE.log2()) }
 }
 
-fn display_pixel(xyz: [f64; 3]) -> [u8; 3] {
-    if !xyz.iter().all(|v| v.is_finite()) {
+fn display_pixel(xyz: DVec3, rgb_from_xyz: &DMat3) -> [u8; 3] {
+    if !xyz.is_finite() {
         return [0; 3];
     }
-    into_gamut(linear_srgb_from_xyz(xyz), xyz[1]).map(|c| (srgb_encode(roll_off(c)) * 255.0).round() as u8)
+    let rgb = into_gamut(*rgb_from_xyz * xyz, xyz.y);
+    rgb.to_array().map(|c| (srgb::encode(roll_off(c)) * 255.0).round() as u8)
 }
 
 /// Mixes with the grey of the same luminance until no component is negative.
-fn into_gamut(rgb: [f64; 3], luminance: f64) -> [f64; 3] {
-    let least = rgb.into_iter().fold(f64::INFINITY, f64::min);
+fn into_gamut(rgb: DVec3, luminance: f64) -> DVec3 {
+    let least = rgb.min_element();
     if least >= 0.0 {
         return rgb;
     }
     if luminance <= 0.0 {
-        return [0.0; 3];
+        return DVec3::ZERO;
     }
-    let keep = luminance / (luminance - least);
-    rgb.map(|c| luminance + (c - luminance) * keep)
+    DVec3::splat(luminance).lerp(rgb, luminance / (luminance - least))
 }
 
 fn roll_off(x: f64) -> f64 {
@@ -96,7 +101,7 @@ mod tests {
         let image = grey(&[0.0, 1e3, 1e5, 0.0]);
         let shown = tone_map(&image, Exposure::Auto).unwrap();
         // The log-average is 1e4: the two pixels lie a factor ten below and above 0.18.
-        let dark = (srgb_encode(0.018) * 255.0).round() as i32;
+        let dark = (srgb::encode(0.018) * 255.0).round() as i32;
         assert!((i32::from(shown.rgb[1][1]) - dark).abs() <= 1, "{:?}", shown.rgb);
         assert_eq!(shown.rgb[0], [0, 0, 0]);
         assert!(shown.rgb[2][1] > 240);
@@ -108,8 +113,8 @@ mod tests {
     fn one_stop_doubles() {
         let image = grey(&[0.1 * UNIT_LUMINANCE]);
         let level = |ev| tone_map(&image, Exposure::Ev(ev)).unwrap().rgb[0][1];
-        assert_eq!(level(0.0), (srgb_encode(0.1) * 255.0).round() as u8);
-        assert_eq!(level(1.0), (srgb_encode(0.2) * 255.0).round() as u8);
+        assert_eq!(level(0.0), (srgb::encode(0.1) * 255.0).round() as u8);
+        assert_eq!(level(1.0), (srgb::encode(0.2) * 255.0).round() as u8);
     }
 
     #[test]
@@ -125,9 +130,10 @@ mod tests {
 
     #[test]
     fn colours_outside_the_gamut_keep_their_luminance() {
-        let rgb = into_gamut([-0.2, 0.9, 0.1], 0.5);
-        assert!(rgb.iter().all(|&c| c >= -1e-12));
-        assert!(rgb[1] > rgb[2] && rgb[2] > rgb[0]);
+        let xyz = DVec3::new(0.1, 0.5, 0.1);
+        let rgb = into_gamut(srgb::rgb_from_xyz() * xyz, xyz.y);
+        assert!((srgb::rgb_from_xyz() * xyz).min_element() < 0.0 && rgb.min_element() > -1e-12);
+        assert!(((srgb::xyz_from_rgb() * rgb).y - xyz.y).abs() < 1e-12);
     }
 
     #[test]

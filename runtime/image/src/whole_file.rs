@@ -26,6 +26,22 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
     Ok(())
 }
 
+/// Whether [`write_whole`] would find a folder that takes files. Leaves nothing behind.
+pub fn check_writable(path: &Path) -> Result<(), ImageError> {
+    temporary_beside(path).map(drop).map_err(|source| ImageError::Write { path: path.to_path_buf(), source })
+}
+
+fn temporary_beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    if path.is_dir() {
+        return Err(std::io::Error::new(std::io::ErrorKind::IsADirectory, "is a folder"));
+    }
+    tempfile::Builder::new().prefix(".arsc-").suffix(".part").tempfile_in(folder)
+}
+
 /// Temporary files are private to their owner; a picture is an ordinary file.
 #[cfg(unix)]
 fn make_readable(file: &std::fs::File) -> std::io::Result<()> {
@@ -59,6 +75,8 @@ mod tests {
         std::fs::create_dir(&target).unwrap();
         std::fs::write(target.join("inside"), b"kept").unwrap();
         assert!(matches!(write_whole(&target, b"bytes"), Err(ImageError::Write { .. })));
+        assert!(check_writable(&target).is_err() && check_writable(&folder.path().join("missing/a.png")).is_err());
+        assert!(check_writable(&folder.path().join("new.png")).is_ok());
         assert_eq!(std::fs::read(target.join("inside")).unwrap(), b"kept");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary is left");
         assert!(write_whole(&folder.path().join("missing/picture.png"), b"bytes").is_err());

@@ -1,0 +1,32 @@
+//! What a run needs from outside: files, a place for messages, and somebody to tell about progress.
+
+use std::path::PathBuf;
+
+/// A failure of the host, with its own words.
+pub type HostError = Box<dyn std::error::Error + Send + Sync>;
+
+/// A file that a scene names.
+pub struct OpenFile {
+    pub content: Box<dyn std::io::Read>,
+    /// Length of the content.
+    pub bytes: u64,
+}
+
+/// The world outside of the renderer.
+pub trait Host {
+    /// Opens a data file; the path is relative to the script's folder.
+    fn open(&self, path: &str) -> Result<OpenFile, HostError>;
+
+    /// Writes a picture whole or not at all. `name` is the script's and relative to the output folder. Gives the
+    /// place, or `None` if the picture is not wanted.
+    fn write(&self, name: &str, bytes: &[u8]) -> Result<Option<PathBuf>, HostError>;
+
+    /// A line for people: what an action prints.
+    fn say(&self, line: &str);
+
+    /// A render of so many camera paths begins; the answer is told how it goes.
+    fn begin(&self, paths: u64) -> Box<dyn arsc_render::Progress + '_>;
+
+    /// Seconds since some fixed moment, for timings.
+    fn seconds(&self) -> f64;
+}

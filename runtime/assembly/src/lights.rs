@@ -1,0 +1,44 @@
+//! Lights and environments of the IR's normal form → the renderer's.
+
+use arsc_ir::{Ir, NodeKind};
+use arsc_render::{Environment, Light};
+use glam::DAffine3;
+
+use crate::AssemblyError;
+use crate::geometry::{members, node};
+
+/// Point and distant lights, and environments, in the order of the root's members. Emissive geometry is found by
+/// `World::new`.
+pub fn lower(ir: &Ir) -> Result<(Vec<Light>, Vec<Environment>), AssemblyError> {
+    let (mut lights, mut environments) = (Vec::new(), Vec::new());
+    for &member in members(ir)? {
+        let (world_from_local, kind) = match &node(ir, member)?.kind {
+            NodeKind::Transform { parent_from_child, child } => (**parent_from_child, &node(ir, *child)?.kind),
+            kind => (DAffine3::IDENTITY, kind),
+        };
+        match kind {
+            NodeKind::Light(light) => lights.push(lower_light(light, &world_from_local)),
+            NodeKind::Environment(environment) => environments.push(lower_environment(environment)?),
+            _ => {}
+        }
+    }
+    Ok((lights, environments))
+}
+
+fn lower_light(light: &arsc_ir::Light, world_from_local: &DAffine3) -> Light {
+    match light {
+        arsc_ir::Light::Point { intensity } => Light::point(world_from_local.translation, intensity),
+        arsc_ir::Light::Distant { irradiance, direction } => {
+            Light::distant(world_from_local.transform_vector3(*direction), irradiance)
+        }
+    }
+}
+
+fn lower_environment(environment: &arsc_ir::Environment) -> Result<Environment, AssemblyError> {
+    match environment {
+        arsc_ir::Environment::Constant { radiance } => Ok(Environment::constant(radiance)),
+        arsc_ir::Environment::HosekWilkie { .. } => {
+            Err(AssemblyError::Settings("the renderer does not have the Hosek-Wilkie sky yet".into()))
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! The action sequence: a typed stack machine.
+//!
+//! The stack begins with the scene. Effects are those documented at [`Action`]; the compiler has checked them, and what
+//! does not fit here is an error, never a guess. An interrupted render leaves an image with fewer samples, and the
+//! sequence goes on with it, so that it gets written; a render that did not get a single sample ends the sequence
+//! instead, so that no empty picture replaces a good one.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use arsc_image::{DisplayImage, SpectralImage};
+use arsc_ir::{Action, Ir};
+use arsc_render::{PathTraceSettings, path_trace};
+
+use crate::stage::{Stage, accel_strategy};
+use crate::{AssemblyError, Host, Settings};
+
+/// What a run of the sequence gave.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// The pictures, in the order in which they were written.
+    pub written: Vec<PathBuf>,
+    pub renders: Vec<RenderReport>,
+    /// Somebody asked for an early end.
+    pub interrupted: bool,
+}
+
+/// One `path_trace`.
+#[derive(Clone, Debug)]
+pub struct RenderReport {
+    /// Building the scene for tracing.
+    pub build_seconds: f64,
+    /// What was built.
+    pub scene: arsc_accel::BuildStats,
+    pub seconds: f64,
+    pub camera_paths: u64,
+    /// Samples per pixel, fewest and most.
+    pub samples: (u32, u32),
+    /// Samples that were not finite or negative and were left out.
+    pub rejected: u64,
+}
+
+/// What lies on the stack.
+#[derive(Clone)]
+enum Item {
+    Scene(arsc_accel::Strategy),
+    Spectral(Arc<SpectralImage>),
+    Display(Arc<DisplayImage>),
+}
+
+impl Item {
+    fn name(item: Option<&Item>) -> &'static str {
+        match item {
+            None => "nothing",
+            Some(Item::Scene(_)) => "a scene",
+            Some(Item::Spectral(_)) => "a spectral image",
+            Some(Item::Display(_)) => "a display image",
+        }
+    }
+}
+
+/// What is done when a script says nothing: a render, written as EXR and PNG under the scene's name.
+pub fn default_actions(scene_name: &str) -> Vec<Action> {
+    let PathTraceSettings { samples, max_depth, seed, .. } = PathTraceSettings::default();
+    vec![
+        Action::PathTrace { samples, max_depth, seed },
+        Action::WriteExr { path: format!("{scene_name}.exr") },
+        Action::ToneMap { exposure: arsc_ir::Exposure::Auto },
+        Action::WritePng { path: format!("{scene_name}.png") },
+    ]
+}
+
+/// The actions that [`run`] goes through.
+pub fn actions(ir: &Ir, scene_name: &str) -> Vec<Action> {
+    if ir.actions.is_empty() {
+        default_actions(scene_name)
+    } else {
+        ir.actions.iter().map(|at| at.action.clone()).collect()
+    }
+}
+
+/// Runs the action sequence of a scene in normal form.
+pub fn run(ir: &Ir, settings: &Settings, host: &dyn Host) -> Result<Outcome, AssemblyError> {
+    let stage = Stage::new(ir, settings, host)?;
+    let mut machine = Machine { stage, settings, host, stack: Vec::new(), outcome: Outcome::default() };
+    machine.stack.push(Item::Scene(settings.strategy.unwrap_or_default()));
+    for action in actions(ir, &settings.scene_name) {
+        if !machine.step(&action)? {
+            break;
+        }
+    }
+    Ok(machine.outcome)
+}
+
+struct Machine<'a> {
+    stage: Stage<'a>,
+    settings: &'a Settings,
+    host: &'a dyn Host,
+    /// The top is the last.
+    stack: Vec<Item>,
+    outcome: Outcome,
+}
+
+impl Machine<'_> {
+    /// Does one action; false when the sequence ends here.
+    fn step(&mut self, action: &Action) -> Result<bool, AssemblyError> {
+        match action {
+            Action::Accelerate { strategy } => {
+                self.scene("accelerate")?;
+                let strategy = self.settings.strategy.unwrap_or(accel_strategy(*strategy));
+                self.stack.pop();
+                self.stack.push(Item::Scene(strategy));
+            }
+            Action::BoundingBoxes => {
+                let strategy = self.scene("bounding_boxes")?;
+                self.stage.say_bounds(strategy)?;
+            }
+            Action::CollectLights => {
+                let strategy = self.scene("collect_lights")?;
+                self.stage.say_lights(strategy)?;
+            }
+            Action::PathTrace { samples, max_depth, seed } => return self.path_trace(*samples, *max_depth, *seed),
+            Action::WriteExr { path } => {
+                let bytes = arsc_image::encode_exr(&*self.spectral("write_exr")?)?;
+                self.write(path, &bytes)?;
+            }
+            Action::ToneMap { exposure } => {
+                let exposure = match exposure {
+                    arsc_ir::Exposure::Auto => arsc_image::Exposure::Auto,
+                    arsc_ir::Exposure::Ev(ev) => arsc_image::Exposure::Ev(*ev),
+                };
+                let image = arsc_image::tone_map(&*self.spectral("tone_map")?, exposure)?;
+                self.stack.pop();
+                self.stack.push(Item::Display(Arc::new(image)));
+            }
+            Action::WritePng { path } => {
+                let bytes = arsc_image::encode_png(&*self.display("write_png")?)?;
+                self.write(path, &bytes)?;
+            }
+            Action::Dup => self.shuffle("dup", 1, |items| vec![items[0].clone(), items[0].clone()])?,
+            Action::Drop => self.shuffle("drop", 1, |_| vec![])?,
+            Action::Swap => self.shuffle("swap", 2, |items| vec![items[1].clone(), items[0].clone()])?,
+            Action::Over => {
+                self.shuffle("over", 2, |items| vec![items[0].clone(), items[1].clone(), items[0].clone()])?;
+            }
+        }
+        Ok(true)
+    }
+
+    fn path_trace(&mut self, samples: u32, max_depth: u32, seed: u64) -> Result<bool, AssemblyError> {
+        let strategy = self.scene("path_trace")?;
+        let camera = self.stage.camera(strategy)?;
+        let settings = PathTraceSettings {
+            samples: self.settings.samples.unwrap_or(samples),
+            max_depth: self.settings.max_depth.unwrap_or(max_depth),
+            seed: self.settings.seed.unwrap_or(seed),
+            crop: self.settings.crop,
+            ..PathTraceSettings::default()
+        };
+        let world = self.stage.world(strategy)?;
+        let progress = self.host.begin(u64::from(settings.samples) * self.settings.pixels(camera.resolution())?);
+        let start = self.host.seconds();
+        let film = self.stage.pool.install(|| path_trace(&world, &camera, &settings, &*progress));
+        let seconds = self.host.seconds() - start;
+        self.outcome.interrupted |= progress.cancelled();
+        drop(progress);
+        let report = RenderReport {
+            build_seconds: self.stage.build_seconds(),
+            scene: *world.geometry.stats(),
+            seconds,
+            camera_paths: film.paths(),
+            samples: film.samples_per_pixel(),
+            rejected: film.rejected(),
+        };
+        let is_empty = report.samples.1 == 0;
+        let mut image = film.to_image();
+        image.metadata = self.metadata(&settings, strategy, &report);
+        self.outcome.renders.push(report);
+        self.stack.push(Item::Spectral(Arc::new(image)));
+        Ok(!is_empty)
+    }
+
+    fn metadata(
+        &self,
+        settings: &PathTraceSettings,
+        strategy: arsc_accel::Strategy,
+        report: &RenderReport,
+    ) -> Vec<(String, String)> {
+        let (fewest, most) = report.samples;
+        let samples = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
+        let mut metadata = self.settings.metadata.clone();
+        let mut add = |name: &str, value: String| metadata.push((name.to_owned(), value));
+        add("seed", settings.seed.to_string());
+        add("samples", samples);
+        add("maxDepth", settings.max_depth.to_string());
+        add("csg", format!("{strategy:?}").to_lowercase());
+        if let Some([x0, y0, x1, y1]) = settings.crop {
+            add("crop", format!("{x0},{y0},{x1},{y1}"));
+        }
+        if most < settings.samples {
+            add("interrupted", format!("after {most} of {} samples", settings.samples));
+        }
+        if self.settings.timings {
+            add("buildSeconds", format!("{:.3}", report.build_seconds));
+            add("renderSeconds", format!("{:.3}", report.seconds));
+        }
+        metadata
+    }
+
+    fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), AssemblyError> {
+        let written =
+            self.host.write(name, bytes).map_err(|source| AssemblyError::Write { name: name.to_owned(), source })?;
+        self.outcome.written.extend(written);
+        Ok(())
+    }
+
+    fn scene(&self, action: &'static str) -> Result<arsc_accel::Strategy, AssemblyError> {
+        match self.stack.last() {
+            Some(Item::Scene(strategy)) => Ok(*strategy),
+            other => Err(mismatch(action, "a scene", other)),
+        }
+    }
+
+    fn spectral(&self, action: &'static str) -> Result<Arc<SpectralImage>, AssemblyError> {
+        match self.stack.last() {
+            Some(Item::Spectral(image)) => Ok(image.clone()),
+            other => Err(mismatch(action, "a spectral image", other)),
+        }
+    }
+
+    fn display(&self, action: &'static str) -> Result<Arc<DisplayImage>, AssemblyError> {
+        match self.stack.last() {
+            Some(Item::Display(image)) => Ok(image.clone()),
+            other => Err(mismatch(action, "a display image", other)),
+        }
+    }
+
+    /// Replaces the `count` topmost items.
+    fn shuffle(
+        &mut self,
+        action: &'static str,
+        count: usize,
+        rearrange: impl Fn(&[Item]) -> Vec<Item>,
+    ) -> Result<(), AssemblyError> {
+        let needs = if count == 1 { "an item" } else { "two items" };
+        let from = self.stack.len().checked_sub(count).ok_or_else(|| mismatch(action, needs, self.stack.last()))?;
+        let rearranged = rearrange(&self.stack[from..]);
+        self.stack.truncate(from);
+        self.stack.extend(rearranged);
+        Ok(())
+    }
+}
+
+fn mismatch(action: &'static str, needs: &'static str, found: Option<&Item>) -> AssemblyError {
+    AssemblyError::Stack { action, needs, found: Item::name(found) }
+}

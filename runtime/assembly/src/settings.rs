@@ -1,0 +1,50 @@
+//! What a run is asked for besides what the script says.
+
+use arsc_accel::Strategy;
+
+use crate::AssemblyError;
+
+/// More pixels than this are refused: a film takes some 600 bytes for each.
+const MOST_PIXELS: u64 = 1 << 26;
+
+/// Values that override the script's where they are given.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    pub samples: Option<u32>,
+    pub max_depth: Option<u32>,
+    pub seed: Option<u64>,
+    pub resolution: Option<[u32; 2]>,
+    /// Pixels x0, y0, x1, y1 (end exclusive); the rest stays black.
+    pub crop: Option<[u32; 4]>,
+    pub strategy: Option<Strategy>,
+    /// Threads; `None` for as many as the machine has.
+    pub threads: Option<usize>,
+    /// Names the pictures of scripts without actions.
+    pub scene_name: String,
+    /// Goes into every picture, before what the render adds itself.
+    pub metadata: Vec<(String, String)>,
+    /// Write timings into pictures; without, equal runs give equal files.
+    pub timings: bool,
+}
+
+impl Settings {
+    /// Pixels to render at this resolution.
+    pub fn pixels(&self, [width, height]: [u32; 2]) -> Result<u64, AssemblyError> {
+        let all = u64::from(width) * u64::from(height);
+        if all > MOST_PIXELS {
+            let refusal = format!("{width}x{height} pixels are more than the supported {MOST_PIXELS}");
+            return Err(AssemblyError::Settings(refusal));
+        }
+        match self.crop {
+            None => Ok(all),
+            Some([x0, y0, x1, y1]) if x0 < x1 && y0 < y1 && x1 <= width && y1 <= height => {
+                Ok(u64::from(x1 - x0) * u64::from(y1 - y0))
+            }
+            Some([x0, y0, x1, y1]) => {
+                let refusal =
+                    format!("the crop {x0},{y0},{x1},{y1} does not lie in the image of {width}x{height} pixels");
+                Err(AssemblyError::Settings(refusal))
+            }
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The scene on its way to a picture: lowered once, built for a strategy when an action needs it.
+
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use arsc_accel::{BuildOptions, Csg, Scene, SceneGeometry, Solid, Strategy};
+use arsc_geometry::{Aabb, Placed};
+use arsc_ir::Ir;
+use arsc_render::{Camera, LightSource, World};
+
+use crate::{AssemblyError, Host, Settings, camera, geometry, lights, materials};
+
+/// Stack of a rendering thread, bytes: Boolean trees recurse.
+const STACK: usize = 64 << 20;
+
+pub struct Stage<'a> {
+    ir: &'a Ir,
+    settings: &'a Settings,
+    host: &'a dyn Host,
+    geometry: SceneGeometry,
+    /// The threads that build and render.
+    pub pool: rayon::ThreadPool,
+    /// The last world that was built.
+    built: RefCell<Option<Built>>,
+}
+
+#[derive(Clone)]
+struct Built {
+    strategy: Strategy,
+    world: Arc<World>,
+    seconds: f64,
+}
+
+impl<'a> Stage<'a> {
+    pub fn new(ir: &'a Ir, settings: &'a Settings, host: &'a dyn Host) -> Result<Stage<'a>, AssemblyError> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(settings.threads.unwrap_or(0))
+            .stack_size(STACK)
+            .build()
+            .map_err(|error| AssemblyError::Settings(format!("cannot start the threads: {error}")))?;
+        let geometry = geometry::lower(ir, host)?;
+        Ok(Stage { ir, settings, host, geometry, pool, built: RefCell::new(None) })
+    }
+
+    /// The scene built for a strategy.
+    pub fn world(&self, strategy: Strategy) -> Result<Arc<World>, AssemblyError> {
+        if let Some(built) = self.built.borrow().as_ref().filter(|built| built.strategy == strategy) {
+            return Ok(built.world.clone());
+        }
+        let start = self.host.seconds();
+        let materials = materials::lower(self.ir)?;
+        let (lights, environments) = lights::lower(self.ir)?;
+        let geometry = self.geometry.clone();
+        let scene = self.pool.install(|| build(geometry, strategy))?;
+        let world = Arc::new(self.pool.install(|| World::new(scene, materials, lights, environments)));
+        let seconds = self.host.seconds() - start;
+        *self.built.borrow_mut() = Some(Built { strategy, world: world.clone(), seconds });
+        Ok(world)
+    }
+
+    /// Seconds that the last build took.
+    pub fn build_seconds(&self) -> f64 {
+        self.built.borrow().as_ref().map_or(0.0, |built| built.seconds)
+    }
+
+    /// The script's camera, or one that frames the bounds of the scene.
+    pub fn camera(&self, strategy: Strategy) -> Result<Camera, AssemblyError> {
+        let resolution = self.settings.resolution;
+        match &self.ir.camera {
+            Some(camera) => Ok(camera::lower(camera, resolution)),
+            None => Ok(camera::lower(&camera::framing(&self.world(strategy)?.geometry.bounds()), resolution)),
+        }
+    }
+
+    /// Prints the bounds of the scene.
+    pub fn say_bounds(&self, strategy: Strategy) -> Result<(), AssemblyError> {
+        let world = self.world(strategy)?;
+        let bounds = world.geometry.bounds();
+        self.host.say(&format!("bounds of the scene: {} to {}", bounds.min, bounds.max));
+        for (i, solid) in self.geometry.solids.iter().enumerate() {
+            let bounds = solid_bounds(&solid.tree, solid);
+            self.host.say(&format!("  solid {i}, {} leaves: {} to {}", solid.leaves.len(), bounds.min, bounds.max));
+        }
+        Ok(())
+    }
+
+    /// Prints the light sources and their powers.
+    pub fn say_lights(&self, strategy: Strategy) -> Result<(), AssemblyError> {
+        let world = self.world(strategy)?;
+        let sources: Vec<_> = world.light_sources().collect();
+        self.host.say(&format!("light sources: {}", sources.len()));
+        for (source, power) in sources {
+            let name = match source {
+                LightSource::Part { part, material } => format!("part {}, material {material}", part.0),
+                LightSource::Light(light) => format!("light {light}"),
+                LightSource::Environment(environment) => format!("environment {environment}"),
+            };
+            self.host.say(&format!("  {name}: {power:.4e} W"));
+        }
+        Ok(())
+    }
+}
+
+/// The scene of `geometry` for tracing.
+pub fn build(geometry: SceneGeometry, strategy: Strategy) -> Result<Scene, AssemblyError> {
+    Scene::build(geometry, BuildOptions { strategy }).map_err(|source| AssemblyError::Accel(Box::new(source)))
+}
+
+/// Bounds of a Boolean tree from those of its leaves: not the tightest, never too tight.
+fn solid_bounds(tree: &Csg, solid: &Solid) -> Aabb {
+    let of = |tree: &Csg| solid_bounds(tree, solid);
+    match tree {
+        Csg::Leaf(leaf) => {
+            let leaf = &solid.leaves[*leaf as usize];
+            Placed::new(leaf.shape, leaf.world_from_object).map_or(Aabb::EVERYTHING, |placed| *placed.bounds())
+        }
+        Csg::Union(operands) => operands.iter().map(of).fold(Aabb::EMPTY, |hull, b| hull.union(&b)),
+        Csg::Intersection(operands) => operands.iter().map(of).fold(Aabb::EVERYTHING, |hull, b| hull.intersection(&b)),
+        Csg::Difference(first, _) => of(first),
+    }
+}
+
+pub fn accel_strategy(strategy: arsc_ir::Strategy) -> Strategy {
+    match strategy {
+        arsc_ir::Strategy::Local => Strategy::Local,
+        arsc_ir::Strategy::Tree => Strategy::Tree,
+    }
+}

@@ -1,0 +1,93 @@
+//! From a script on disk to an IR, with its diagnostics shown.
+
+use arsc_driver::{Compiled, LoadError};
+use arsc_ir::Ir;
+use sha2::{Digest, Sha256};
+
+use crate::args::SceneArgs;
+use crate::bug;
+use crate::exit::Exit;
+use crate::files::{ScriptFolder, read_script};
+use crate::report;
+
+/// A script that compiled.
+pub struct Scene {
+    pub ir: Ir,
+    pub folder: ScriptFolder,
+    /// The file's name without extension; `scene` for standard input.
+    pub name: String,
+    /// Of the texts of the script and its imports, and of `--set`: the first 128 bits of SHA-256 in hexadecimal.
+    pub hash: String,
+}
+
+/// Compiles. What there is to say is printed on standard error; the exit says why there is no scene.
+pub fn compile(args: &SceneArgs, quiet: bool) -> Result<Scene, Exit> {
+    bug::stage("compile");
+    let shown = if args.scene.as_os_str() == "-" { "<stdin>".into() } else { args.scene.display().to_string() };
+    let mut options = arsc_driver::Options::default();
+    options.settings.clone_from(&args.set);
+    let text = match read_script(&args.scene) {
+        Ok(text) => text,
+        Err(error) => return Err(unreadable(&shown, &error, &options)),
+    };
+    let folder = ScriptFolder::of(&args.scene, &args.allow_read).map_err(|error| {
+        eprintln!("error: cannot use the folder of {shown}, or one given with --allow-read: {error}");
+        Exit::CouldNotRun
+    })?;
+    let compiled = arsc_driver::compile(&shown, text, &folder, &options);
+    let hash = hash(&compiled, &args.set);
+    if compiled.has_errors() || !quiet {
+        report::human(&compiled);
+    }
+    let has_errors = compiled.has_errors();
+    match compiled.ir {
+        Some(ir) if !has_errors => Ok(Scene { ir, folder, name: name(args), hash }),
+        _ => Err(Exit::Findings),
+    }
+}
+
+/// A script that is no text is the author's business, one that cannot be opened is not.
+fn unreadable(shown: &str, error: &LoadError, options: &arsc_driver::Options) -> Exit {
+    match arsc_driver::unreadable(shown, error, options) {
+        Some(compiled) => {
+            report::human(&compiled);
+            Exit::Findings
+        }
+        None => {
+            eprintln!("error: cannot read {shown}: {}", words(error));
+            Exit::CouldNotRun
+        }
+    }
+}
+
+fn name(args: &SceneArgs) -> String {
+    match args.scene.file_stem() {
+        Some(stem) if args.scene.as_os_str() != "-" => stem.to_string_lossy().into_owned(),
+        _ => "scene".into(),
+    }
+}
+
+fn hash(compiled: &Compiled, set: &[(String, String)]) -> String {
+    let mut hasher = Sha256::new();
+    let mut add = |text: &str| {
+        hasher.update((text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
+    };
+    compiled.sources.iter().for_each(|(_, file)| add(&file.text));
+    for (name, value) in set {
+        add(name);
+        add(value);
+    }
+    hasher.finalize()[..16].iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Why a text could not be read, for people.
+pub fn words(error: &LoadError) -> String {
+    match error {
+        LoadError::NotFound => "there is no such file".into(),
+        LoadError::NotText(offset) => format!("it is not UTF-8 text (byte {offset})"),
+        LoadError::TooLarge { bytes } => format!("it is too large ({bytes} bytes or more)"),
+        LoadError::Forbidden => "it lies outside of what may be read (see --allow-read)".into(),
+        LoadError::Other(text) => text.clone(),
+    }
+}

@@ -1,0 +1,205 @@
+//! `arsc render`: runs a script's action sequence.
+
+use std::path::{Path, PathBuf};
+
+use arsc_assembly::{Outcome, Settings};
+use arsc_ir::{Action, Ir};
+
+use crate::args::{self, SceneArgs};
+use crate::compile::{Scene, compile};
+use crate::exit::Exit;
+use crate::failure::failure;
+use crate::files::Output;
+use crate::host::Machine;
+use crate::progress::{count, seconds};
+use crate::{bug, interrupt};
+
+/// How CSG is traced; all give the same picture.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Csg {
+    /// Cells with simplified trees (the default)
+    Local,
+    /// Every leaf, then the whole tree: slow and obvious
+    Tree,
+}
+
+impl From<Csg> for arsc_accel::Strategy {
+    fn from(csg: Csg) -> arsc_accel::Strategy {
+        match csg {
+            Csg::Local => arsc_accel::Strategy::Local,
+            Csg::Tree => arsc_accel::Strategy::Tree,
+        }
+    }
+}
+
+/// Values that override the script's.
+#[derive(clap::Args, Clone, Debug)]
+pub struct RenderSettings {
+    /// Threads [default: as many as the machine has]
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+
+    /// Samples per pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub samples: Option<u32>,
+
+    /// Largest number of scattering events of a path
+    #[arg(long, value_name = "N")]
+    pub max_depth: Option<u32>,
+
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WxH", value_parser = args::resolution)]
+    pub resolution: Option<[u32; 2]>,
+
+    /// Renders only these pixels, from the upper left corner, the end excluded; the rest stays black
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = args::crop)]
+    pub crop: Option<[u32; 4]>,
+
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+
+    /// How CSG is traced
+    #[arg(long, value_enum)]
+    pub csg: Option<Csg>,
+}
+
+impl RenderSettings {
+    pub fn to_settings(&self) -> Settings {
+        Settings {
+            samples: self.samples,
+            max_depth: self.max_depth,
+            seed: self.seed,
+            resolution: self.resolution,
+            crop: self.crop,
+            strategy: self.csg.map(Into::into),
+            threads: self.threads.map(usize::from),
+            ..Settings::default()
+        }
+    }
+}
+
+/// Renders a scene: runs its action sequence, by default a path trace written as spectral EXR and PNG
+#[derive(clap::Args, Debug)]
+pub struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+
+    /// Folder for the pictures, or one picture: a path that ends in .exr or .png
+    #[arg(short, long, value_name = "DIR|FILE", default_value = ".")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    settings: RenderSettings,
+
+    /// Prints nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+
+    /// Prints times, rates and counts at the end
+    #[arg(long)]
+    stats: bool,
+
+    /// Leaves timings and the command line out of the pictures: equal renders give equal files
+    #[arg(long)]
+    reproducible: bool,
+}
+
+pub fn run(args: &Args) -> Exit {
+    let scene = match compile(&args.scene, args.quiet) {
+        Ok(scene) => scene,
+        Err(exit) => return exit,
+    };
+    let output = Output::new(&args.output);
+    if let Err(exit) = check_output(&output, &scene) {
+        return exit;
+    }
+    interrupt::install();
+    bug::stage("render");
+    let machine = Machine::new(&scene.folder, Some(&output), args.quiet);
+    let settings = settings(args, &scene);
+    bug::seed(settings.seed.unwrap_or_else(|| script_seed(&scene.ir)));
+    match arsc_assembly::run(&scene.ir, &settings, &machine) {
+        Ok(outcome) => conclude(args, &outcome),
+        Err(error) => failure(&error),
+    }
+}
+
+fn settings(args: &Args, scene: &Scene) -> Settings {
+    let mut metadata = vec![
+        ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+        ("sceneHash".to_owned(), scene.hash.clone()),
+    ];
+    if !args.reproducible {
+        let words: Vec<String> = std::env::args_os().skip(1).map(|a| a.to_string_lossy().into_owned()).collect();
+        metadata.push(("commandLine".to_owned(), format!("arsc {}", words.join(" "))));
+    }
+    let timings = !args.reproducible;
+    Settings { scene_name: scene.name.clone(), metadata, timings, ..args.settings.to_settings() }
+}
+
+fn script_seed(ir: &Ir) -> u64 {
+    let seed = |action: &Action| if let Action::PathTrace { seed, .. } = action { Some(*seed) } else { None };
+    ir.actions.iter().find_map(|at| seed(&at.action)).unwrap_or(0)
+}
+
+/// Finds out before the render whether its pictures can be written, and whether the one asked for is among them.
+fn check_output(output: &Output, scene: &Scene) -> Result<(), Exit> {
+    let actions = arsc_assembly::actions(&scene.ir, &scene.name);
+    let names = actions.iter().filter_map(|action| match action {
+        Action::WriteExr { path } | Action::WritePng { path } => Some(path),
+        _ => None,
+    });
+    let mut places = Vec::new();
+    for name in names {
+        if let Some(place) = output.place(name).map_err(|error| failure(&error))? {
+            arsc_image::check_writable(&place).map_err(|error| failure(&error))?;
+            places.push(place);
+        }
+    }
+    if let Output::File(file) = output
+        && places.len() != 1
+    {
+        let kind = file.extension().map(Path::new).unwrap_or(Path::new("")).display();
+        eprintln!("error: the script writes {} .{kind} pictures, not one: give -o a folder", places.len());
+        return Err(Exit::CouldNotRun);
+    }
+    Ok(())
+}
+
+fn conclude(args: &Args, outcome: &Outcome) -> Exit {
+    if args.stats {
+        statistics(outcome);
+    }
+    let rejected: u64 = outcome.renders.iter().map(|render| render.rejected).sum();
+    if rejected > 0 {
+        eprintln!("warning: {rejected} samples were not finite or negative and were left out");
+    }
+    if !args.quiet {
+        for path in &outcome.written {
+            println!("wrote {}", path.display());
+        }
+    }
+    if outcome.interrupted {
+        let most = outcome.renders.last().map_or(0, |render| render.samples.1);
+        let fate =
+            if outcome.written.is_empty() { "nothing was written" } else { "what had been rendered was written" };
+        eprintln!("interrupted after {most} samples per pixel: {fate}");
+        return Exit::Interrupted;
+    }
+    Exit::Clean
+}
+
+fn statistics(outcome: &Outcome) {
+    for render in &outcome.renders {
+        let scene = &render.scene;
+        let rate = render.camera_paths as f64 / render.seconds.max(1e-9);
+        eprintln!("solids         {} and {} instances", scene.solids, scene.instances);
+        eprintln!("surfaces       {}", scene.surfaces);
+        eprintln!("primitives     {} in {} cells", scene.primitives, scene.cells);
+        eprintln!("memory         {}B for tracing", count(scene.bytes as f64));
+        eprintln!("build          {}", seconds(render.build_seconds));
+        eprintln!("render         {}", seconds(render.seconds));
+        eprintln!("camera paths   {} ({} samples/s)", count(render.camera_paths as f64), count(rate));
+    }
+}
