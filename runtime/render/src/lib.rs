@@ -25,7 +25,7 @@ pub use film::{Bands, Film, FilmMismatch, Tile};
 pub use filter::{FilterSample, FilterShape, ReconstructionFilter};
 pub use frame::Frame;
 pub use integrator::incident_radiance;
-pub use light::{Environment, EnvironmentSample, Light};
+pub use light::{Environment, EnvironmentSample, Light, SkySettings};
 pub use path_trace::{PathTraceSettings, Progress, path_trace};
 pub use sampler::Sampler;
 pub use world::{LightSource, Material, World};

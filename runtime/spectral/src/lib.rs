@@ -11,6 +11,7 @@ mod observer;
 mod planck;
 mod sampled;
 pub mod sky;
+mod sky_lanes;
 mod spectrum;
 pub mod srgb;
 mod uplift;
@@ -23,6 +24,7 @@ pub use observer::{
 };
 pub use planck::planck;
 pub use sampled::SampledSpectrum;
+pub use sky_lanes::SkyLanes;
 pub use spectrum::Spectrum;
 pub use uplift::uplift_rgb;
 pub use wavelengths::SampledWavelengths;

@@ -13,8 +13,8 @@ use std::sync::LazyLock;
 
 /// Wavelengths of the data: 320, 360 … 720 nm.
 pub const BANDS: usize = 11;
-const FIRST_NM: f64 = 320.0;
-const STEP_NM: f64 = 40.0;
+pub(crate) const FIRST_NM: f64 = 320.0;
+pub(crate) const STEP_NM: f64 = 40.0;
 
 /// Angular radius of the solar disc, radians: the mean apparent diameter of 1919 arc seconds. (The authors' own code
 /// draws a disc of 0.51 degrees, which leaves some 8 % of the direct irradiance out.)
@@ -25,7 +25,7 @@ pub const TURBIDITY: [f64; 2] = [1.0, 10.0];
 const TURBIDITIES: usize = 10;
 const ALBEDOS: usize = 2;
 const CONTROL_POINTS: usize = 6;
-const PARAMETERS: usize = 9;
+pub(crate) const PARAMETERS: usize = 9;
 const PIECES: usize = 45;
 const POWERS: usize = 4;
 const LIMB_POWERS: usize = 6;
@@ -60,8 +60,8 @@ static TABLES: LazyLock<Tables> = LazyLock::new(|| {
 #[derive(Clone, Debug)]
 pub struct HosekWilkieSky {
     /// A B C D E F G I H of the paper's equation 8, in the data's order.
-    parameters: [[f64; PARAMETERS]; BANDS],
-    radiance: [f64; BANDS],
+    pub(crate) parameters: [[f64; PARAMETERS]; BANDS],
+    pub(crate) radiance: [f64; BANDS],
     /// Lower turbidity of the data, and the weight of the next.
     turbidity: (usize, f64),
 }

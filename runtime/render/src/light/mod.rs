@@ -7,7 +7,9 @@
 mod alias;
 mod constant;
 mod distant;
+mod grid;
 mod point;
+mod sky;
 
 use arsc_spectral::{SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
@@ -16,6 +18,7 @@ pub use alias::AliasTable;
 pub use constant::ConstantEnvironment;
 pub use distant::DistantLight;
 pub use point::PointLight;
+pub use sky::{SkyEnvironment, SkySettings};
 
 /// A light without extent.
 #[derive(Clone, Debug)]
@@ -48,6 +51,7 @@ impl Light {
 #[derive(Clone, Debug)]
 pub enum Environment {
     Constant(ConstantEnvironment),
+    Sky(Box<SkyEnvironment>),
 }
 
 /// A direction to an environment.
@@ -65,12 +69,17 @@ impl Environment {
         Environment::Constant(ConstantEnvironment::new(radiance))
     }
 
+    /// The sky of Hosek and Wilkie 2012 with the sun of 2013; z is up.
+    pub fn hosek_wilkie(settings: &SkySettings) -> Environment {
+        Environment::Sky(Box::new(SkyEnvironment::new(settings)))
+    }
+
     /// Radiance that arrives from the direction `wi`.
     #[inline]
     pub fn radiance(&self, wi: DVec3, wavelengths: &SampledWavelengths) -> SampledSpectrum {
-        let _ = wi;
         match self {
             Environment::Constant(constant) => constant.radiance(wavelengths),
+            Environment::Sky(sky) => sky.radiance(wi, wavelengths),
         }
     }
 
@@ -79,15 +88,16 @@ impl Environment {
     pub fn sample(&self, u: [f64; 2], wavelengths: &SampledWavelengths) -> Option<EnvironmentSample> {
         match self {
             Environment::Constant(constant) => Some(constant.sample(u, wavelengths)),
+            Environment::Sky(sky) => sky.sample(u, wavelengths),
         }
     }
 
     /// Density per steradian with which [`Environment::sample`] gives `wi`.
     #[inline]
     pub fn pdf(&self, wi: DVec3) -> f64 {
-        let _ = wi;
         match self {
             Environment::Constant(_) => crate::warp::UNIFORM_SPHERE_PDF,
+            Environment::Sky(sky) => sky.pdf(wi),
         }
     }
 
@@ -96,6 +106,7 @@ impl Environment {
         let area = std::f64::consts::PI * scene_radius * scene_radius;
         match self {
             Environment::Constant(constant) => area * constant.fluence(),
+            Environment::Sky(sky) => area * sky.fluence(),
         }
     }
 }
