@@ -14,6 +14,10 @@ mod graph;
 mod light;
 mod material;
 mod node;
+mod print;
+mod read;
+mod term;
+mod verify;
 
 pub use action::{Action, Exposure, Strategy};
 pub use builder::Builder;
@@ -21,6 +25,8 @@ pub use camera::{Camera, Filter, Projection};
 pub use light::{Environment, Light};
 pub use material::{Attributes, Bsdf, CutRule, Emitter, Material, MaterialId};
 pub use node::{Leaf, Node, NodeId, NodeKind, Precedence, Surface};
+pub use read::{ReadError, read};
+pub use verify::{Violation, verify};
 
 pub use arsc_geometry::{Aabb, Shape};
 pub use arsc_spectral::Spectrum;

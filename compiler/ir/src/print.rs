@@ -1,0 +1,400 @@
+//! The text form of an IR: one statement a line, children before parents.
+//!
+//! ```text
+//! ir 1
+//! bsdf b0 = lambert(reflectance: constant(0.4))
+//! material m0 = material(bsdf: b0)
+//! %0 = sphere(radius: 1.0, material: m0) @0:10..19
+//! %1 = box(min: [0.0, 0.0, 0.0], max: [1.0, 1.0, 1.0], at: [0.0, 0.0, 2.5], material: m0) @0:30..35
+//! %2 = union(%0, %1) @0:10..35
+//! root %2
+//! camera perspective(fov: 0.6, eye: […], target: […], up: […], resolution: [700, 700], filter: box(radius: 0.5))
+//! action write_png(path: "out.png") @0:50..60
+//! ```
+//!
+//! Floats are written as the shortest text that reads back as the same number. `at` is a translation, `map` a general
+//! affine map (the images of x, y, z, then the translation); neither: the identity. `@source:start..end` is the
+//! provenance. [`crate::read`] reads it back; the grammar is in `docs/reference/ir.md`.
+
+use std::fmt::{self, Display, Formatter, Write};
+
+use arsc_diagnostics::Span;
+use arsc_geometry::{DAffine3, DVec3, Shape};
+use arsc_spectral::Spectrum;
+
+use crate::{
+    Action, Attributes, Bsdf, Camera, CutRule, Emitter, Environment, Exposure, Filter, Ir, Leaf, Light, Material,
+    NodeId, NodeKind, Precedence, Projection, Strategy, Surface,
+};
+
+impl Display for Ir {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "ir 1")?;
+        for (id, bsdf) in self.bsdfs.iter().enumerate() {
+            writeln!(f, "bsdf b{id} = {}", Text(bsdf))?;
+        }
+        for (id, emitter) in self.emitters.iter().enumerate() {
+            writeln!(f, "emitter e{id} = {}", Text(emitter))?;
+        }
+        for (id, material) in self.materials.iter().enumerate() {
+            writeln!(f, "material m{id} = {}", Text(material))?;
+        }
+        for (id, node) in self.nodes.iter().enumerate() {
+            writeln!(f, "%{id} = {} {}", Text(&node.kind), Text(&node.origin))?;
+        }
+        writeln!(f, "root {}", Text(&self.root))?;
+        if let Some(camera) = &self.camera {
+            writeln!(f, "camera {}", Text(camera))?;
+        }
+        for action in &self.actions {
+            writeln!(f, "action {} {}", Text(&action.action), Text(&action.origin))?;
+        }
+        Ok(())
+    }
+}
+
+/// Something as the text form writes it.
+struct Text<'a, T>(&'a T);
+
+/// Writes `name(argument: value, …)`.
+struct Call<'a, 'b> {
+    f: &'a mut Formatter<'b>,
+    empty: bool,
+}
+
+impl<'a, 'b> Call<'a, 'b> {
+    fn new(f: &'a mut Formatter<'b>, name: &str) -> Result<Call<'a, 'b>, fmt::Error> {
+        write!(f, "{name}(")?;
+        Ok(Call { f, empty: true })
+    }
+
+    fn value(mut self, value: impl Display) -> Result<Self, fmt::Error> {
+        self.separate()?;
+        write!(self.f, "{value}")?;
+        Ok(self)
+    }
+
+    fn arg(mut self, name: &str, value: impl Display) -> Result<Self, fmt::Error> {
+        self.separate()?;
+        write!(self.f, "{name}: {value}")?;
+        Ok(self)
+    }
+
+    fn float(self, name: &str, value: f64) -> Result<Self, fmt::Error> {
+        self.arg(name, Float(value))
+    }
+
+    fn point(self, name: &str, value: DVec3) -> Result<Self, fmt::Error> {
+        self.arg(name, Floats(&value.to_array()))
+    }
+
+    fn index(self, name: &str, prefix: &str, value: Option<u32>) -> Result<Self, fmt::Error> {
+        match value {
+            Some(value) => self.arg(name, format_args!("{prefix}{value}")),
+            None => Ok(self),
+        }
+    }
+
+    fn map(self, map: &DAffine3) -> Result<Self, fmt::Error> {
+        let columns = map.to_cols_array();
+        let bits = |columns: &[f64]| -> Vec<u64> { columns.iter().map(|x| x.to_bits()).collect() };
+        let identity = DAffine3::IDENTITY.to_cols_array();
+        if bits(&columns) == bits(&identity) {
+            Ok(self)
+        } else if bits(&columns[..9]) == bits(&identity[..9]) {
+            self.point("at", map.translation)
+        } else {
+            self.arg("map", Floats(&columns))
+        }
+    }
+
+    fn separate(&mut self) -> fmt::Result {
+        if !std::mem::take(&mut self.empty) {
+            self.f.write_str(", ")?;
+        }
+        Ok(())
+    }
+
+    fn end(self) -> fmt::Result {
+        self.f.write_char(')')
+    }
+}
+
+struct Float(f64);
+
+impl Display for Float {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}", self.0)
+    }
+}
+
+struct Floats<'a>(&'a [f64]);
+
+impl Display for Floats<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_char('[')?;
+        for (i, value) in self.0.iter().enumerate() {
+            let comma = if i > 0 { ", " } else { "" };
+            write!(f, "{comma}{value:?}")?;
+        }
+        f.write_char(']')
+    }
+}
+
+/// A string literal: only `"`, `\` and control characters are escaped.
+struct Quoted<'a>(&'a str);
+
+impl Display for Quoted<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_char('"')?;
+        for c in self.0.chars() {
+            match c {
+                '"' | '\\' => write!(f, "\\{c}")?,
+                c if c.is_control() => write!(f, "\\u{{{:x}}}", c as u32)?,
+                c => f.write_char(c)?,
+            }
+        }
+        f.write_char('"')
+    }
+}
+
+impl Display for Text<'_, Span> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Span { source, start, end } = *self.0;
+        write!(f, "@{}:{start}..{end}", source.0)
+    }
+}
+
+impl Display for Text<'_, NodeId> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "%{}", self.0.0)
+    }
+}
+
+impl Display for Text<'_, Spectrum> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Spectrum::Constant(value) => Call::new(f, "constant")?.value(Float(*value))?.end(),
+            Spectrum::Tabulated { lambda_nm, values } => {
+                Call::new(f, "tabulated")?.arg("lambda_nm", Floats(lambda_nm))?.arg("values", Floats(values))?.end()
+            }
+            Spectrum::Blackbody { kelvin } => Call::new(f, "blackbody")?.float("kelvin", *kelvin)?.end(),
+            Spectrum::Gaussian { center_nm, sigma_nm, peak } => Call::new(f, "gaussian")?
+                .float("center_nm", *center_nm)?
+                .float("sigma_nm", *sigma_nm)?
+                .float("peak", *peak)?
+                .end(),
+            Spectrum::Sellmeier { b, c_um2 } => {
+                Call::new(f, "sellmeier")?.arg("b", Floats(b))?.arg("c_um2", Floats(c_um2))?.end()
+            }
+            Spectrum::Cauchy { a, b_um2, c_um4 } => {
+                Call::new(f, "cauchy")?.float("a", *a)?.float("b_um2", *b_um2)?.float("c_um4", *c_um4)?.end()
+            }
+            Spectrum::Sigmoid { coefficients } => Call::new(f, "sigmoid")?.value(Floats(coefficients))?.end(),
+            Spectrum::Scaled { factor, spectrum } => {
+                Call::new(f, "scaled")?.value(Float(*factor))?.value(Text(&**spectrum))?.end()
+            }
+            Spectrum::Product(a, b) => Call::new(f, "product")?.value(Text(&**a))?.value(Text(&**b))?.end(),
+            Spectrum::Sum(a, b) => Call::new(f, "sum")?.value(Text(&**a))?.value(Text(&**b))?.end(),
+        }
+    }
+}
+
+impl Display for Text<'_, Bsdf> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Bsdf::Lambert { reflectance } => Call::new(f, "lambert")?.arg("reflectance", Text(reflectance))?.end(),
+            Bsdf::OrenNayar { reflectance, sigma } => {
+                Call::new(f, "oren_nayar")?.arg("reflectance", Text(reflectance))?.float("sigma", *sigma)?.end()
+            }
+            Bsdf::Mirror { reflectance } => Call::new(f, "mirror")?.arg("reflectance", Text(reflectance))?.end(),
+            Bsdf::Dielectric { ior } => Call::new(f, "dielectric")?.arg("ior", Text(ior))?.end(),
+            Bsdf::Conductor { eta, k } => Call::new(f, "conductor")?.arg("eta", Text(eta))?.arg("k", Text(k))?.end(),
+        }
+    }
+}
+
+impl Display for Text<'_, Emitter> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Emitter { radiance, two_sided } = self.0;
+        Call::new(f, "emitter")?.arg("radiance", Text(radiance))?.arg("two_sided", two_sided)?.end()
+    }
+}
+
+impl Display for Text<'_, Material> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Material { bsdf, emitter } = *self.0;
+        Call::new(f, "material")?.index("bsdf", "b", bsdf)?.index("emitter", "e", emitter)?.end()
+    }
+}
+
+impl Display for Text<'_, NodeKind> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let operands = |f: &mut Formatter<'_>, name: &str, children: &[NodeId]| {
+            let call = children.iter().try_fold(Call::new(f, name)?, |call, child| call.value(Text(child)))?;
+            call.end()
+        };
+        match self.0 {
+            NodeKind::Leaf(leaf) => write!(f, "{}", Text(&**leaf)),
+            NodeKind::Union(children) => operands(f, "union", children),
+            NodeKind::Intersection(children) => operands(f, "intersection", children),
+            NodeKind::Difference(children) => operands(f, "difference", children),
+            NodeKind::Group(children) => operands(f, "group", children),
+            NodeKind::Transform { parent_from_child, child } => {
+                Call::new(f, "transform")?.value(Text(child))?.map(parent_from_child)?.end()
+            }
+            NodeKind::Attributes { attributes: Attributes { bsdf, emitter, cut }, precedence, child } => {
+                let name = match precedence {
+                    Precedence::Inner => "with",
+                    Precedence::Outer => "override",
+                };
+                let call = Call::new(f, name)?.value(Text(child))?;
+                let call = call.index("bsdf", "b", *bsdf)?.index("emitter", "e", *emitter)?;
+                match cut {
+                    None => call.end(),
+                    Some(CutRule::Inherit) => call.arg("cut", "inherit")?.end(),
+                    Some(CutRule::Bsdf(bsdf)) => call.index("cut", "b", Some(*bsdf))?.end(),
+                }
+            }
+            NodeKind::Light(light) => write!(f, "{}", Text(&**light)),
+            NodeKind::Environment(environment) => write!(f, "{}", Text(&**environment)),
+        }
+    }
+}
+
+impl Display for Text<'_, Leaf> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let (call, map, material) = match self.0 {
+            Leaf::Solid { shape, parent_from_object, material } => {
+                (open_shape(f, shape)?, parent_from_object, material)
+            }
+            Leaf::Surface { surface, parent_from_object, material } => {
+                (open_surface(f, surface)?, parent_from_object, material)
+            }
+        };
+        call.map(map)?.index("material", "m", material.map(|id| id.0))?.end()
+    }
+}
+
+fn open_shape<'a, 'b>(f: &'a mut Formatter<'b>, shape: &Shape) -> Result<Call<'a, 'b>, fmt::Error> {
+    match *shape {
+        Shape::Sphere { radius } => Call::new(f, "sphere")?.float("radius", radius),
+        Shape::Box { min, max } => Call::new(f, "box")?.point("min", min)?.point("max", max),
+        Shape::Cylinder { radius, height } => {
+            Call::new(f, "cylinder")?.float("radius", radius)?.float("height", height)
+        }
+        Shape::InfiniteCylinder { radius } => Call::new(f, "infinite_cylinder")?.float("radius", radius),
+        Shape::Cone { base_radius, top_radius, height } => Call::new(f, "cone")?
+            .float("base_radius", base_radius)?
+            .float("top_radius", top_radius)?
+            .float("height", height),
+        Shape::Torus { major, minor } => Call::new(f, "torus")?.float("major", major)?.float("minor", minor),
+        Shape::HalfSpace => Call::new(f, "half_space"),
+    }
+}
+
+fn open_surface<'a, 'b>(f: &'a mut Formatter<'b>, surface: &Surface) -> Result<Call<'a, 'b>, fmt::Error> {
+    let corners = |call: Call<'a, 'b>, corners: &[DVec3]| {
+        corners.iter().try_fold(call, |call, corner| call.value(Floats(&corner.to_array())))
+    };
+    match surface {
+        Surface::Triangle(points) => corners(Call::new(f, "triangle")?, points),
+        Surface::Quad(points) => corners(Call::new(f, "quad")?, points),
+        Surface::Rectangle { width, depth } => {
+            Call::new(f, "rectangle")?.float("width", *width)?.float("depth", *depth)
+        }
+        Surface::Disk { radius } => Call::new(f, "disk")?.float("radius", *radius),
+        Surface::Plane => Call::new(f, "plane"),
+        Surface::Mesh { path } => Call::new(f, "mesh")?.arg("path", Quoted(path)),
+    }
+}
+
+impl Display for Text<'_, Light> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Light::Point { intensity } => Call::new(f, "point_light")?.arg("intensity", Text(intensity))?.end(),
+            Light::Distant { irradiance, direction } => Call::new(f, "distant_light")?
+                .arg("irradiance", Text(irradiance))?
+                .point("direction", *direction)?
+                .end(),
+        }
+    }
+}
+
+impl Display for Text<'_, Environment> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Environment::Constant { radiance } => {
+                Call::new(f, "constant_environment")?.arg("radiance", Text(radiance))?.end()
+            }
+            Environment::HosekWilkie { turbidity, ground_albedo, sun, solar_disc, scale } => {
+                Call::new(f, "hosek_wilkie")?
+                    .float("turbidity", *turbidity)?
+                    .float("ground_albedo", *ground_albedo)?
+                    .point("sun", *sun)?
+                    .arg("solar_disc", solar_disc)?
+                    .float("scale", *scale)?
+                    .end()
+            }
+        }
+    }
+}
+
+impl Display for Text<'_, Camera> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Camera { projection, eye, target, up, resolution: [width, height], filter } = self.0;
+        let call = match projection {
+            Projection::Perspective { fov } => Call::new(f, "perspective")?.float("fov", *fov)?,
+        };
+        call.point("eye", *eye)?
+            .point("target", *target)?
+            .point("up", *up)?
+            .arg("resolution", format_args!("[{width}, {height}]"))?
+            .arg("filter", Text(filter))?
+            .end()
+    }
+}
+
+impl Display for Text<'_, Filter> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match *self.0 {
+            Filter::Box { radius } => Call::new(f, "box")?.float("radius", radius)?.end(),
+            Filter::Tent { radius } => Call::new(f, "tent")?.float("radius", radius)?.end(),
+            Filter::Gaussian { radius, sigma } => {
+                Call::new(f, "gaussian")?.float("radius", radius)?.float("sigma", sigma)?.end()
+            }
+            Filter::Mitchell { radius, b, c } => {
+                Call::new(f, "mitchell")?.float("radius", radius)?.float("b", b)?.float("c", c)?.end()
+            }
+        }
+    }
+}
+
+impl Display for Text<'_, Action> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Action::Accelerate { strategy } => {
+                let strategy = match strategy {
+                    Strategy::Local => "local",
+                    Strategy::Tree => "tree",
+                };
+                Call::new(f, "accelerate")?.arg("strategy", strategy)?.end()
+            }
+            Action::BoundingBoxes => f.write_str("bounding_boxes()"),
+            Action::CollectLights => f.write_str("collect_lights()"),
+            Action::PathTrace { samples, max_depth, seed } => Call::new(f, "path_trace")?
+                .arg("samples", samples)?
+                .arg("max_depth", max_depth)?
+                .arg("seed", seed)?
+                .end(),
+            Action::ToneMap { exposure: Exposure::Auto } => f.write_str("tone_map(exposure: auto)"),
+            Action::ToneMap { exposure: Exposure::Ev(ev) } => Call::new(f, "tone_map")?.float("exposure", *ev)?.end(),
+            Action::WriteExr { path } => Call::new(f, "write_exr")?.arg("path", Quoted(path))?.end(),
+            Action::WritePng { path } => Call::new(f, "write_png")?.arg("path", Quoted(path))?.end(),
+            Action::Dup => f.write_str("dup()"),
+            Action::Swap => f.write_str("swap()"),
+            Action::Drop => f.write_str("drop()"),
+            Action::Over => f.write_str("over()"),
+        }
+    }
+}

@@ -1,0 +1,732 @@
+//! Reading the text form back (see the module `print` for how it looks).
+//!
+//! Reading checks the form and what a statement refers to (nodes, bsdfs, emitters and materials stand before their
+//! use); the rest of the invariants is the verifier's.
+
+use std::fmt;
+use std::sync::Arc;
+
+use arsc_diagnostics::{SourceId, Span};
+use arsc_geometry::{DAffine3, DVec3, Shape};
+use arsc_spectral::Spectrum;
+
+use crate::term::{Cursor, Fault, Term, TermKind};
+use crate::{
+    Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Emitter, Environment, Exposure, Filter, Ir, Leaf, Light,
+    Material, MaterialId, Node, NodeId, NodeKind, Precedence, Projection, Strategy, Surface,
+};
+
+/// Why a text is no IR; one-based position, the column counted in characters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReadError {
+    pub line: usize,
+    pub column: usize,
+    pub message: String,
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}", self.line, self.column, self.message)
+    }
+}
+
+impl std::error::Error for ReadError {}
+
+/// Reads the text form of an IR.
+///
+/// # Errors
+/// The first place where the text does not have the form.
+pub fn read(text: &str) -> Result<Ir, ReadError> {
+    read_statements(text).map_err(|(offset, message)| {
+        let before = &text[..offset];
+        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
+        let line = before.matches('\n').count() + 1;
+        ReadError { line, column: before[line_start..].chars().count() + 1, message }
+    })
+}
+
+fn read_statements(text: &str) -> Result<Ir, Fault> {
+    let mut cursor = Cursor::new(text);
+    cursor.expect("ir")?;
+    cursor.expect("1")?;
+    let mut ir = Ir {
+        nodes: Vec::new(),
+        root: NodeId(u32::MAX),
+        bsdfs: Vec::new(),
+        emitters: Vec::new(),
+        materials: Vec::new(),
+        camera: None,
+        actions: Vec::new(),
+    };
+    while cursor.skip_blank() {
+        statement(&mut cursor, &mut ir)?;
+    }
+    if ir.root.0 == u32::MAX {
+        return cursor.fault("there is no `root`");
+    }
+    Ok(ir)
+}
+
+fn statement(cursor: &mut Cursor, ir: &mut Ir) -> Result<(), Fault> {
+    if cursor.peek() == Some('%') {
+        let start = cursor.offset;
+        if cursor.node()? as usize != ir.nodes.len() {
+            return Err((start, format!("expected the next node, `%{}`", ir.nodes.len())));
+        }
+        cursor.expect("=")?;
+        let kind = node_kind(Args::new(cursor.term()?)?, ir)?;
+        let origin = span(cursor)?;
+        ir.nodes.push(Node { kind, origin });
+        return Ok(());
+    }
+    let start = cursor.offset;
+    match cursor.word()? {
+        "bsdf" => {
+            let term = definition(cursor, 'b', ir.bsdfs.len())?;
+            ir.bsdfs.push(bsdf(term)?);
+        }
+        "emitter" => {
+            let term = definition(cursor, 'e', ir.emitters.len())?;
+            ir.emitters.push(emitter(term)?);
+        }
+        "material" => {
+            let term = definition(cursor, 'm', ir.materials.len())?;
+            let material = material(term, ir)?;
+            ir.materials.push(material);
+        }
+        "root" => {
+            let root = cursor.term()?;
+            ir.root = node_id(&root, ir)?;
+        }
+        "camera" => ir.camera = Some(camera(cursor.term()?)?),
+        "action" => {
+            let action = action(cursor.term()?)?;
+            let origin = span(cursor)?;
+            ir.actions.push(ActionAt { action, origin });
+        }
+        word => return Err((start, format!("a statement cannot begin with `{word}`"))),
+    }
+    Ok(())
+}
+
+/// `b3 = term`, where `b3` must be the next of its table.
+fn definition<'a>(cursor: &mut Cursor<'a>, prefix: char, next: usize) -> Result<Term<'a>, Fault> {
+    cursor.skip_blank();
+    let start = cursor.offset;
+    if cursor.word()? != format!("{prefix}{next}") {
+        return Err((start, format!("expected the next entry, `{prefix}{next}`")));
+    }
+    cursor.expect("=")?;
+    cursor.term()
+}
+
+/// `@source:start..end`
+fn span(cursor: &mut Cursor) -> Result<Span, Fault> {
+    cursor.expect("@")?;
+    let source = SourceId(cursor.integer()?);
+    cursor.expect(":")?;
+    let start = cursor.integer()?;
+    cursor.expect("..")?;
+    let at = cursor.offset;
+    let end = cursor.integer()?;
+    if end < start {
+        return Err((at, "a span ends before it starts".to_owned()));
+    }
+    Ok(Span { source, start, end })
+}
+
+/// The arguments of a call, taken one by one.
+struct Args<'a> {
+    name: &'a str,
+    offset: usize,
+    rest: std::collections::VecDeque<(Option<&'a str>, Term<'a>)>,
+}
+
+impl<'a> Args<'a> {
+    fn new(term: Term<'a>) -> Result<Args<'a>, Fault> {
+        match term.kind {
+            TermKind::Call(name, arguments) => Ok(Args { name, offset: term.offset, rest: arguments.into() }),
+            _ => Err((term.offset, "expected `name(…)`".to_owned())),
+        }
+    }
+
+    fn next(&mut self) -> Result<Term<'a>, Fault> {
+        match self.rest.front() {
+            Some((None, _)) => Ok(self.rest.pop_front().expect("it is there").1),
+            _ => Err((self.offset, format!("`{}` lacks an operand", self.name))),
+        }
+    }
+
+    fn optional(&mut self, name: &str) -> Option<Term<'a>> {
+        let at = self.rest.iter().position(|(given, _)| *given == Some(name))?;
+        self.rest.remove(at).map(|(_, term)| term)
+    }
+
+    fn take(&mut self, name: &str) -> Result<Term<'a>, Fault> {
+        self.optional(name).ok_or_else(|| (self.offset, format!("`{}` lacks `{name}`", self.name)))
+    }
+
+    fn float(&mut self, name: &str) -> Result<f64, Fault> {
+        float(&self.take(name)?)
+    }
+
+    fn point(&mut self, name: &str) -> Result<DVec3, Fault> {
+        floats(&self.take(name)?).map(DVec3::from_array)
+    }
+
+    fn spectrum(&mut self, name: &str) -> Result<Spectrum, Fault> {
+        spectrum(self.take(name)?)
+    }
+
+    fn integer<T: std::str::FromStr>(&mut self, name: &str) -> Result<T, Fault> {
+        integer(&self.take(name)?)
+    }
+
+    fn text(&mut self, name: &str) -> Result<String, Fault> {
+        let term = self.take(name)?;
+        match term.kind {
+            TermKind::Text(text) => Ok(text),
+            _ => Err((term.offset, "expected a string".to_owned())),
+        }
+    }
+
+    fn boolean(&mut self, name: &str) -> Result<bool, Fault> {
+        let term = self.take(name)?;
+        match term.kind {
+            TermKind::Word("true") => Ok(true),
+            TermKind::Word("false") => Ok(false),
+            _ => Err((term.offset, "expected `true` or `false`".to_owned())),
+        }
+    }
+
+    fn map(&mut self) -> Result<DAffine3, Fault> {
+        if let Some(at) = self.optional("at") {
+            return Ok(DAffine3::from_translation(DVec3::from_array(floats(&at)?)));
+        }
+        match self.optional("map") {
+            Some(map) => Ok(DAffine3::from_cols_array(&floats(&map)?)),
+            None => Ok(DAffine3::IDENTITY),
+        }
+    }
+
+    fn index(&mut self, name: &str, prefix: char, length: usize) -> Result<Option<u32>, Fault> {
+        self.optional(name).map(|term| index(&term, prefix, length)).transpose()
+    }
+
+    fn unknown<T>(&self, what: &str) -> Result<T, Fault> {
+        Err((self.offset, format!("`{}` is no {what}", self.name)))
+    }
+
+    fn end(self) -> Result<(), Fault> {
+        match self.rest.front() {
+            None => Ok(()),
+            Some((_, term)) => Err((term.offset, format!("`{}` takes no such argument", self.name))),
+        }
+    }
+}
+
+fn float(term: &Term) -> Result<f64, Fault> {
+    match term.kind {
+        TermKind::Number(text) => text.parse().map_err(|_| (term.offset, format!("`{text}` is no number"))),
+        TermKind::Word("inf") => Ok(f64::INFINITY),
+        TermKind::Word("NaN") => Ok(f64::NAN),
+        _ => Err((term.offset, "expected a number".to_owned())),
+    }
+}
+
+fn float_list(term: &Term) -> Result<Vec<f64>, Fault> {
+    match &term.kind {
+        TermKind::List(items) => items.iter().map(float).collect(),
+        _ => Err((term.offset, "expected a list of numbers".to_owned())),
+    }
+}
+
+fn floats<const N: usize>(term: &Term) -> Result<[f64; N], Fault> {
+    float_list(term)?.try_into().map_err(|_| (term.offset, format!("expected {N} numbers")))
+}
+
+fn integer<T: std::str::FromStr>(term: &Term) -> Result<T, Fault> {
+    match term.kind {
+        TermKind::Number(text) => text.parse().map_err(|_| (term.offset, format!("`{text}` is no such integer"))),
+        _ => Err((term.offset, "expected an integer".to_owned())),
+    }
+}
+
+fn index(term: &Term, prefix: char, length: usize) -> Result<u32, Fault> {
+    let index = match term.kind {
+        TermKind::Word(word) => word.strip_prefix(prefix).and_then(|digits| digits.parse::<u32>().ok()),
+        _ => None,
+    };
+    match index {
+        Some(index) if (index as usize) < length => Ok(index),
+        Some(_) => Err((term.offset, "not defined before its use".to_owned())),
+        None => Err((term.offset, format!("expected `{prefix}` and a number"))),
+    }
+}
+
+fn node_id(term: &Term, ir: &Ir) -> Result<NodeId, Fault> {
+    match term.kind {
+        TermKind::Node(id) if (id as usize) < ir.nodes.len() => Ok(NodeId(id)),
+        TermKind::Node(_) => Err((term.offset, "not defined before its use".to_owned())),
+        _ => Err((term.offset, "expected a node such as `%0`".to_owned())),
+    }
+}
+
+fn spectrum(term: Term) -> Result<Spectrum, Fault> {
+    let mut args = Args::new(term)?;
+    let spectrum = match args.name {
+        "constant" => Spectrum::Constant(float(&args.next()?)?),
+        "tabulated" => {
+            let lambda_nm = float_list(&args.take("lambda_nm")?)?.into();
+            Spectrum::Tabulated { lambda_nm, values: float_list(&args.take("values")?)?.into() }
+        }
+        "blackbody" => Spectrum::Blackbody { kelvin: args.float("kelvin")? },
+        "gaussian" => Spectrum::Gaussian {
+            center_nm: args.float("center_nm")?,
+            sigma_nm: args.float("sigma_nm")?,
+            peak: args.float("peak")?,
+        },
+        "sellmeier" => Spectrum::Sellmeier { b: floats(&args.take("b")?)?, c_um2: floats(&args.take("c_um2")?)? },
+        "cauchy" => Spectrum::Cauchy { a: args.float("a")?, b_um2: args.float("b_um2")?, c_um4: args.float("c_um4")? },
+        "sigmoid" => Spectrum::Sigmoid { coefficients: floats(&args.next()?)? },
+        "scaled" => Spectrum::Scaled { factor: float(&args.next()?)?, spectrum: Arc::new(spectrum(args.next()?)?) },
+        "product" => Spectrum::Product(Arc::new(spectrum(args.next()?)?), Arc::new(spectrum(args.next()?)?)),
+        "sum" => Spectrum::Sum(Arc::new(spectrum(args.next()?)?), Arc::new(spectrum(args.next()?)?)),
+        _ => return args.unknown("spectrum"),
+    };
+    args.end()?;
+    Ok(spectrum)
+}
+
+fn bsdf(term: Term) -> Result<Bsdf, Fault> {
+    let mut args = Args::new(term)?;
+    let bsdf = match args.name {
+        "lambert" => Bsdf::Lambert { reflectance: args.spectrum("reflectance")? },
+        "oren_nayar" => Bsdf::OrenNayar { reflectance: args.spectrum("reflectance")?, sigma: args.float("sigma")? },
+        "mirror" => Bsdf::Mirror { reflectance: args.spectrum("reflectance")? },
+        "dielectric" => Bsdf::Dielectric { ior: args.spectrum("ior")? },
+        "conductor" => Bsdf::Conductor { eta: args.spectrum("eta")?, k: args.spectrum("k")? },
+        _ => return args.unknown("bsdf"),
+    };
+    args.end()?;
+    Ok(bsdf)
+}
+
+fn emitter(term: Term) -> Result<Emitter, Fault> {
+    let mut args = Args::new(term)?;
+    if args.name != "emitter" {
+        return args.unknown("emitter");
+    }
+    let emitter = Emitter { radiance: args.spectrum("radiance")?, two_sided: args.boolean("two_sided")? };
+    args.end()?;
+    Ok(emitter)
+}
+
+fn material(term: Term, ir: &Ir) -> Result<Material, Fault> {
+    let mut args = Args::new(term)?;
+    if args.name != "material" {
+        return args.unknown("material");
+    }
+    let bsdf = args.index("bsdf", 'b', ir.bsdfs.len())?;
+    let emitter = args.index("emitter", 'e', ir.emitters.len())?;
+    args.end()?;
+    Ok(Material { bsdf, emitter })
+}
+
+fn node_kind(mut args: Args, ir: &Ir) -> Result<NodeKind, Fault> {
+    let kind = match args.name {
+        "union" => NodeKind::Union(operands(&mut args, ir)?),
+        "intersection" => NodeKind::Intersection(operands(&mut args, ir)?),
+        "difference" => NodeKind::Difference(operands(&mut args, ir)?),
+        "group" => NodeKind::Group(operands(&mut args, ir)?),
+        "transform" => {
+            let child = node_id(&args.next()?, ir)?;
+            NodeKind::Transform { parent_from_child: Box::new(args.map()?), child }
+        }
+        "with" => attributes(&mut args, ir, Precedence::Inner)?,
+        "override" => attributes(&mut args, ir, Precedence::Outer)?,
+        "point_light" => NodeKind::Light(Box::new(Light::Point { intensity: args.spectrum("intensity")? })),
+        "distant_light" => NodeKind::Light(Box::new(Light::Distant {
+            irradiance: args.spectrum("irradiance")?,
+            direction: args.point("direction")?,
+        })),
+        "constant_environment" => {
+            NodeKind::Environment(Box::new(Environment::Constant { radiance: args.spectrum("radiance")? }))
+        }
+        "hosek_wilkie" => NodeKind::Environment(Box::new(Environment::HosekWilkie {
+            turbidity: args.float("turbidity")?,
+            ground_albedo: args.float("ground_albedo")?,
+            sun: args.point("sun")?,
+            solar_disc: args.boolean("solar_disc")?,
+            scale: args.float("scale")?,
+        })),
+        _ => NodeKind::Leaf(Box::new(leaf(&mut args, ir)?)),
+    };
+    args.end()?;
+    Ok(kind)
+}
+
+fn operands(args: &mut Args, ir: &Ir) -> Result<Vec<NodeId>, Fault> {
+    let mut operands = Vec::with_capacity(args.rest.len());
+    while !args.rest.is_empty() {
+        operands.push(node_id(&args.next()?, ir)?);
+    }
+    Ok(operands)
+}
+
+fn attributes(args: &mut Args, ir: &Ir, precedence: Precedence) -> Result<NodeKind, Fault> {
+    let child = node_id(&args.next()?, ir)?;
+    let bsdf = args.index("bsdf", 'b', ir.bsdfs.len())?;
+    let emitter = args.index("emitter", 'e', ir.emitters.len())?;
+    let cut = match args.optional("cut") {
+        None => None,
+        Some(Term { kind: TermKind::Word("inherit"), .. }) => Some(CutRule::Inherit),
+        Some(term) => Some(CutRule::Bsdf(index(&term, 'b', ir.bsdfs.len())?)),
+    };
+    Ok(NodeKind::Attributes { attributes: Attributes { bsdf, emitter, cut }, precedence, child })
+}
+
+fn leaf(args: &mut Args, ir: &Ir) -> Result<Leaf, Fault> {
+    if let Some(shape) = shape(args)? {
+        let parent_from_object = args.map()?;
+        let material = args.index("material", 'm', ir.materials.len())?.map(MaterialId);
+        return Ok(Leaf::Solid { shape, parent_from_object, material });
+    }
+    let surface = surface(args)?;
+    let parent_from_object = args.map()?;
+    let material = args.index("material", 'm', ir.materials.len())?.map(MaterialId);
+    Ok(Leaf::Surface { surface, parent_from_object, material })
+}
+
+fn shape(args: &mut Args) -> Result<Option<Shape>, Fault> {
+    Ok(Some(match args.name {
+        "sphere" => Shape::Sphere { radius: args.float("radius")? },
+        "box" => Shape::Box { min: args.point("min")?, max: args.point("max")? },
+        "cylinder" => Shape::Cylinder { radius: args.float("radius")?, height: args.float("height")? },
+        "infinite_cylinder" => Shape::InfiniteCylinder { radius: args.float("radius")? },
+        "cone" => Shape::Cone {
+            base_radius: args.float("base_radius")?,
+            top_radius: args.float("top_radius")?,
+            height: args.float("height")?,
+        },
+        "torus" => Shape::Torus { major: args.float("major")?, minor: args.float("minor")? },
+        "half_space" => Shape::HalfSpace,
+        _ => return Ok(None),
+    }))
+}
+
+fn surface(args: &mut Args) -> Result<Surface, Fault> {
+    fn corners<const N: usize>(args: &mut Args) -> Result<[DVec3; N], Fault> {
+        let mut corners = [DVec3::ZERO; N];
+        for corner in &mut corners {
+            *corner = DVec3::from_array(floats(&args.next()?)?);
+        }
+        Ok(corners)
+    }
+    Ok(match args.name {
+        "triangle" => Surface::Triangle(corners(args)?),
+        "quad" => Surface::Quad(corners(args)?),
+        "rectangle" => Surface::Rectangle { width: args.float("width")?, depth: args.float("depth")? },
+        "disk" => Surface::Disk { radius: args.float("radius")? },
+        "plane" => Surface::Plane,
+        "mesh" => Surface::Mesh { path: args.text("path")?.into() },
+        _ => return args.unknown("node"),
+    })
+}
+
+fn camera(term: Term) -> Result<Camera, Fault> {
+    let mut args = Args::new(term)?;
+    let projection = match args.name {
+        "perspective" => Projection::Perspective { fov: args.float("fov")? },
+        _ => return args.unknown("camera"),
+    };
+    let (eye, target, up) = (args.point("eye")?, args.point("target")?, args.point("up")?);
+    let resolution = args.take("resolution")?;
+    let resolution = match &resolution.kind {
+        TermKind::List(items) if items.len() == 2 => [integer(&items[0])?, integer(&items[1])?],
+        _ => return Err((resolution.offset, "expected `[width, height]`".to_owned())),
+    };
+    let filter = filter(args.take("filter")?)?;
+    args.end()?;
+    Ok(Camera { projection, eye, target, up, resolution, filter })
+}
+
+fn filter(term: Term) -> Result<Filter, Fault> {
+    let mut args = Args::new(term)?;
+    let radius = args.float("radius")?;
+    let filter = match args.name {
+        "box" => Filter::Box { radius },
+        "tent" => Filter::Tent { radius },
+        "gaussian" => Filter::Gaussian { radius, sigma: args.float("sigma")? },
+        "mitchell" => Filter::Mitchell { radius, b: args.float("b")?, c: args.float("c")? },
+        _ => return args.unknown("filter"),
+    };
+    args.end()?;
+    Ok(filter)
+}
+
+fn action(term: Term) -> Result<Action, Fault> {
+    let mut args = Args::new(term)?;
+    let action = match args.name {
+        "accelerate" => Action::Accelerate { strategy: strategy(&args.take("strategy")?)? },
+        "bounding_boxes" => Action::BoundingBoxes,
+        "collect_lights" => Action::CollectLights,
+        "path_trace" => Action::PathTrace {
+            samples: args.integer("samples")?,
+            max_depth: args.integer("max_depth")?,
+            seed: args.integer("seed")?,
+        },
+        "tone_map" => {
+            let exposure = args.take("exposure")?;
+            let exposure = match exposure.kind {
+                TermKind::Word("auto") => Exposure::Auto,
+                _ => Exposure::Ev(float(&exposure)?),
+            };
+            Action::ToneMap { exposure }
+        }
+        "write_exr" => Action::WriteExr { path: args.text("path")? },
+        "write_png" => Action::WritePng { path: args.text("path")? },
+        "dup" => Action::Dup,
+        "swap" => Action::Swap,
+        "drop" => Action::Drop,
+        "over" => Action::Over,
+        _ => return args.unknown("action"),
+    };
+    args.end()?;
+    Ok(action)
+}
+
+fn strategy(term: &Term) -> Result<Strategy, Fault> {
+    match term.kind {
+        TermKind::Word("local") => Ok(Strategy::Local),
+        TermKind::Word("tree") => Ok(Strategy::Tree),
+        _ => Err((term.offset, "expected `local` or `tree`".to_owned())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Builder, verify};
+    use proptest::prelude::*;
+
+    fn number() -> impl Strategy2<Value = f64> {
+        prop_oneof![-10.0..10.0f64, Just(-0.0), Just(1e-300), Just(0.1), -1e300..1e300f64]
+    }
+
+    // The name of proptest's trait is taken by CSG strategies.
+    use proptest::strategy::Strategy as Strategy2;
+
+    fn positive() -> impl Strategy2<Value = f64> {
+        prop_oneof![1e-3..1e3f64, Just(f64::MIN_POSITIVE)]
+    }
+
+    fn vector() -> impl Strategy2<Value = DVec3> {
+        [number(), number(), number()].prop_map(DVec3::from_array)
+    }
+
+    fn any_spectrum() -> impl Strategy2<Value = Spectrum> {
+        let leaf = prop_oneof![
+            number().prop_map(Spectrum::Constant),
+            positive().prop_map(|kelvin| Spectrum::Blackbody { kelvin }),
+            (number(), positive(), number()).prop_map(|(center_nm, sigma_nm, peak)| Spectrum::Gaussian {
+                center_nm,
+                sigma_nm,
+                peak
+            }),
+            ([number(), number(), number()], [number(), number(), number()])
+                .prop_map(|(b, c_um2)| Spectrum::Sellmeier { b, c_um2 }),
+            (number(), number(), number()).prop_map(|(a, b_um2, c_um4)| Spectrum::Cauchy { a, b_um2, c_um4 }),
+            [number(), number(), number()].prop_map(|coefficients| Spectrum::Sigmoid { coefficients }),
+            prop::collection::vec(number(), 1..5).prop_map(|values| Spectrum::Tabulated {
+                lambda_nm: (0..values.len()).map(|i| 400.0 + i as f64).collect(),
+                values: values.into(),
+            }),
+        ];
+        leaf.prop_recursive(3, 8, 2, |inner| {
+            prop_oneof![
+                (number(), inner.clone())
+                    .prop_map(|(factor, spectrum)| Spectrum::Scaled { factor, spectrum: Arc::new(spectrum) }),
+                (inner.clone(), inner.clone()).prop_map(|(a, b)| Spectrum::Product(Arc::new(a), Arc::new(b))),
+                (inner.clone(), inner).prop_map(|(a, b)| Spectrum::Sum(Arc::new(a), Arc::new(b))),
+            ]
+        })
+    }
+
+    fn any_map() -> impl Strategy2<Value = DAffine3> {
+        prop_oneof![
+            Just(DAffine3::IDENTITY),
+            vector().prop_map(DAffine3::from_translation),
+            (-3.0..3.0f64, [0.1..5.0f64, 0.1..5.0f64, -5.0..-0.1f64], vector()).prop_map(|(angle, scale, by)| {
+                let turned = DAffine3::from_rotation_z(angle) * DAffine3::from_scale(DVec3::from_array(scale));
+                DAffine3 { translation: by, ..turned }
+            }),
+        ]
+    }
+
+    fn any_leaf() -> impl Strategy2<Value = Leaf> {
+        let shape = prop_oneof![
+            positive().prop_map(|radius| Shape::Sphere { radius }),
+            (vector(), [positive(), positive(), positive()])
+                .prop_map(|(min, size)| Shape::Box { min, max: min + min.abs() + DVec3::from_array(size) }),
+            (positive(), positive()).prop_map(|(radius, height)| Shape::Cylinder { radius, height }),
+            positive().prop_map(|radius| Shape::InfiniteCylinder { radius }),
+            (positive(), positive()).prop_map(|(r, height)| Shape::Cone { base_radius: r, top_radius: 0.0, height }),
+            (positive(), positive()).prop_map(|(major, minor)| Shape::Torus { major, minor }),
+            Just(Shape::HalfSpace),
+        ];
+        let surface = prop_oneof![
+            [vector(), vector(), vector()].prop_map(Surface::Triangle),
+            [vector(), vector(), vector(), vector()].prop_map(Surface::Quad),
+            (positive(), positive()).prop_map(|(width, depth)| Surface::Rectangle { width, depth }),
+            positive().prop_map(|radius| Surface::Disk { radius }),
+            Just(Surface::Plane),
+            "[ -~é\n\"\\\\]{1,8}".prop_map(|path| Surface::Mesh { path: path.into() }),
+        ];
+        prop_oneof![
+            (shape, any_map()).prop_map(|(shape, parent_from_object)| Leaf::Solid {
+                shape,
+                parent_from_object,
+                material: None
+            }),
+            (surface, any_map()).prop_map(|(surface, parent_from_object)| Leaf::Surface {
+                surface,
+                parent_from_object,
+                material: None
+            }),
+        ]
+    }
+
+    /// What a node is made of, with operands as numbers to be taken modulo the nodes so far.
+    #[derive(Clone, Debug)]
+    enum Recipe {
+        Leaf(Leaf),
+        Boolean(u8, Vec<usize>),
+        Transform(DAffine3, usize),
+        Attributes(Attributes, bool, usize),
+        Light(Spectrum, bool),
+        Sky(Spectrum, bool),
+    }
+
+    fn any_recipe() -> impl Strategy2<Value = Recipe> {
+        let cut = prop_oneof![Just(None), Just(Some(CutRule::Inherit)), Just(Some(CutRule::Bsdf(1)))];
+        let bundle = (prop::option::of(0..2u32), prop::option::of(0..1u32), cut)
+            .prop_map(|(bsdf, emitter, cut)| Attributes { bsdf, emitter, cut });
+        prop_oneof![
+            4 => any_leaf().prop_map(Recipe::Leaf),
+            4 => (0..4u8, prop::collection::vec(any::<usize>(), 1..4)).prop_map(|(kind, of)| Recipe::Boolean(kind, of)),
+            2 => (any_map(), any::<usize>()).prop_map(|(map, of)| Recipe::Transform(map, of)),
+            2 => (bundle, any::<bool>(), any::<usize>()).prop_map(|(a, inner, of)| Recipe::Attributes(a, inner, of)),
+            1 => (any_spectrum(), any::<bool>()).prop_map(|(s, distant)| Recipe::Light(s, distant)),
+            1 => (any_spectrum(), any::<bool>()).prop_map(|(s, sky)| Recipe::Sky(s, sky)),
+        ]
+    }
+
+    fn any_ir() -> impl Strategy2<Value = Ir> {
+        let tables = (any_spectrum(), any_spectrum(), number());
+        (prop::collection::vec(any_recipe(), 1..30), tables, any::<[u32; 3]>()).prop_map(
+            |(recipes, tables, numbers)| {
+                let mut b = Builder::new();
+                b.bsdf(Bsdf::OrenNayar { reflectance: tables.0.clone(), sigma: tables.2 });
+                b.bsdf(Bsdf::Conductor { eta: tables.0.clone(), k: tables.1.clone() });
+                b.emitter(Emitter { radiance: tables.1, two_sided: numbers[0] % 2 == 0 });
+                for (i, recipe) in recipes.into_iter().enumerate() {
+                    let origin = Span { source: SourceId(i as u32), start: numbers[1] / 2, end: u32::MAX };
+                    let id = |of: usize| NodeId((of % i.max(1)) as u32);
+                    let kind = match recipe {
+                        Recipe::Boolean(kind, of) if i > 0 => {
+                            let of = of.into_iter().map(id).collect();
+                            [NodeKind::Union, NodeKind::Intersection, NodeKind::Difference, NodeKind::Group]
+                                [kind as usize](of)
+                        }
+                        Recipe::Transform(map, of) if i > 0 => {
+                            NodeKind::Transform { parent_from_child: Box::new(map), child: id(of) }
+                        }
+                        Recipe::Attributes(attributes, inner, of) if i > 0 => {
+                            let precedence = if inner { Precedence::Inner } else { Precedence::Outer };
+                            NodeKind::Attributes { attributes, precedence, child: id(of) }
+                        }
+                        Recipe::Light(intensity, false) => NodeKind::Light(Box::new(Light::Point { intensity })),
+                        Recipe::Light(irradiance, true) => {
+                            NodeKind::Light(Box::new(Light::Distant { irradiance, direction: DVec3::Z }))
+                        }
+                        Recipe::Sky(radiance, false) => {
+                            NodeKind::Environment(Box::new(Environment::Constant { radiance }))
+                        }
+                        Recipe::Sky(_, true) => NodeKind::Environment(Box::new(Environment::HosekWilkie {
+                            turbidity: tables.2,
+                            ground_albedo: 0.1,
+                            sun: DVec3::new(-0.0, 0.6, 0.8),
+                            solar_disc: numbers[2] % 2 == 0,
+                            scale: 1.0,
+                        })),
+                        Recipe::Leaf(leaf) => NodeKind::Leaf(Box::new(leaf)),
+                        _ => NodeKind::Union(Vec::new()),
+                    };
+                    b.push(kind, origin);
+                }
+                let last = NodeId(b.len() as u32 - 1);
+                b.camera(Camera {
+                    projection: Projection::Perspective { fov: tables.2 },
+                    eye: DVec3::X,
+                    target: DVec3::new(tables.2, -0.0, 1e-9),
+                    up: DVec3::Z,
+                    resolution: [numbers[0], numbers[1]],
+                    filter: Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 },
+                });
+                let at = Span::new(SourceId(0), 3, 9);
+                b.action(Action::PathTrace { samples: numbers[2], max_depth: 3, seed: u64::MAX }, at);
+                b.action(Action::ToneMap { exposure: Exposure::Ev(tables.2) }, at);
+                b.action(Action::WritePng { path: "a \"quoted\\\" \u{1} path.png".to_owned() }, at);
+                b.finish(last)
+            },
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn what_is_printed_reads_back_and_prints_the_same(ir in any_ir()) {
+            let text = ir.to_string();
+            let back = read(&text).map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
+            prop_assert_eq!(&back, &ir);
+            prop_assert_eq!(back.to_string(), text);
+        }
+
+        #[test]
+        fn garbage_is_an_error_and_no_panic(prefix in 0..400usize, garbage in "[ -~é\n]{0,30}") {
+            let text = "ir 1\nbsdf b0 = lambert(reflectance: tabulated(lambda_nm: [1.0], values: [2.0]))\n\
+                        material m0 = material(bsdf: b0)\n%0 = sphere(radius: 1.0, at: [1.0, 2.0, 3.0]) @0:1..2\n\
+                        %1 = mesh(path: \"a\\u{e9}\") @0:1..2\n%2 = with(%0, cut: b0) @0:2..3\nroot %2\n";
+            let mut end = prefix.min(text.len());
+            while !text.is_char_boundary(end) { end -= 1; }
+            let damaged = format!("{}{garbage}{}", &text[..end], &text[end..]);
+            if let Ok(ir) = read(&damaged) {
+                let _ = verify(&ir);
+            }
+        }
+    }
+
+    #[test]
+    fn errors_name_the_place() {
+        let cases = [
+            ("", "1:1: expected `ir`"),
+            ("ir 1\n%0 = sphere() @0:1..2\nroot %0", "2:6: `sphere` lacks `radius`"),
+            ("ir 1\n%0 = union(%0) @0:1..2\nroot %0", "2:12: not defined before its use"),
+            ("ir 1\n%1 = union() @0:1..2\nroot %1", "2:1: expected the next node, `%0`"),
+            ("ir 1\n%0 = union() @0:1..2\n", "3:1: there is no `root`"),
+            ("ir 1\n%0 = plane(at: [1, 2]) @0:1..2", "2:16: expected 3 numbers"),
+            ("ir 1\n%0 = plane(size: 2) @0:1..2", "2:18: `plane` takes no such argument"),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(read(text).expect_err(text).to_string(), expected);
+        }
+    }
+
+    #[test]
+    fn deep_nesting_is_an_error() {
+        let text = format!("ir 1\nbsdf b0 = mirror(reflectance: {}", "scaled(2.0, ".repeat(100_000));
+        assert!(read(&text).expect_err("too deep").message.contains("nested"));
+    }
+}

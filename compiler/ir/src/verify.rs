@@ -1,0 +1,300 @@
+//! The verifier: every invariant of the IR that its types do not carry.
+//!
+//! It runs between passes in debug and test builds, and on text that is read. A scene that analysis accepted verifies;
+//! a violation is a bug of the stage before (or a hand-written text).
+
+use std::fmt;
+
+use arsc_geometry::{DVec3, invert};
+use arsc_spectral::Spectrum;
+
+use crate::{
+    Attributes, Bsdf, Camera, CutRule, Environment, Ir, Leaf, Light, MaterialId, NodeId, NodeKind, Projection, Surface,
+};
+
+/// Spectra nest at most this deep, so that everybody may recurse into them.
+const MAX_SPECTRUM_DEPTH: usize = 128;
+
+/// A broken invariant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// `%3`, `b0`, `camera` …
+    pub place: String,
+    pub message: &'static str,
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.message)
+    }
+}
+
+/// Everything that is wrong with an IR, in the order of its tables.
+///
+/// # Errors
+/// At least one violation; at most a hundred are listed.
+pub fn verify(ir: &Ir) -> Result<(), Vec<Violation>> {
+    let mut found = Found(Vec::new());
+    for (id, bsdf) in ir.bsdfs.iter().enumerate() {
+        found.check(check_bsdf(bsdf), || format!("b{id}"));
+    }
+    for (id, emitter) in ir.emitters.iter().enumerate() {
+        found.check(check_spectrum(&emitter.radiance), || format!("e{id}"));
+    }
+    for (id, material) in ir.materials.iter().enumerate() {
+        found.check(check_attributes(ir, material.bsdf, material.emitter), || format!("m{id}"));
+    }
+    let mut contents: Vec<Contents> = Vec::with_capacity(ir.nodes.len());
+    for (id, node) in ir.nodes.iter().enumerate() {
+        let content = check_node(ir, id, &contents);
+        contents.push(*content.as_ref().unwrap_or(&Contents::default()));
+        found.check(content.map(|_| ()), || format!("%{id}"));
+    }
+    if ir.root.index() >= ir.nodes.len() {
+        found.check(Err("there is no such node"), || format!("root %{}", ir.root.0));
+    }
+    if let Some(camera) = &ir.camera {
+        found.check(check_camera(camera), || "camera".to_owned());
+    }
+    if found.0.is_empty() { Ok(()) } else { Err(found.0) }
+}
+
+type Check<T = ()> = Result<T, &'static str>;
+
+struct Found(Vec<Violation>);
+
+impl Found {
+    fn check(&mut self, result: Check, place: impl FnOnce() -> String) {
+        if let Err(message) = result
+            && self.0.len() < 100
+        {
+            self.0.push(Violation { place: place(), message });
+        }
+    }
+}
+
+fn require(condition: bool, message: &'static str) -> Check {
+    if condition { Ok(()) } else { Err(message) }
+}
+
+/// What is below a node.
+#[derive(Clone, Copy, Default)]
+struct Contents {
+    /// A solid, or the empty set: something that a Boolean operator works on.
+    solid: bool,
+    /// A surface or a group: nothing that a Boolean operator could work on.
+    open: bool,
+}
+
+fn check_node(ir: &Ir, id: usize, contents: &[Contents]) -> Check<Contents> {
+    let kind = &ir.nodes[id].kind;
+    let children = kind.children();
+    require(children.iter().all(|child| child.index() < id), "a child does not come before its parent")?;
+    let below = children.iter().fold(Contents::default(), |sum, child| {
+        let NodeId(child) = *child;
+        let child = contents[child as usize];
+        Contents { solid: sum.solid | child.solid, open: sum.open | child.open }
+    });
+    let all_solid = children.iter().all(|child| contents[child.index()].solid);
+    match kind {
+        NodeKind::Leaf(leaf) => check_leaf(ir, leaf),
+        NodeKind::Union(_) => Ok(Contents { solid: below.solid || children.is_empty(), ..below }),
+        NodeKind::Intersection(_) | NodeKind::Difference(_) => {
+            require(!children.is_empty(), "a Boolean node has no operands")?;
+            require(all_solid, "an operand is no solid")?;
+            require(!below.open, "an operand holds an open surface or a group")?;
+            Ok(below)
+        }
+        NodeKind::Group(_) => Ok(Contents { open: true, ..below }),
+        NodeKind::Transform { parent_from_child, .. } => {
+            require(invert(parent_from_child).is_some(), "the map is not finite and invertible")?;
+            Ok(below)
+        }
+        NodeKind::Attributes { attributes: Attributes { bsdf, emitter, cut }, .. } => {
+            check_attributes(ir, *bsdf, *emitter)?;
+            if let Some(CutRule::Bsdf(bsdf)) = cut {
+                check_attributes(ir, Some(*bsdf), None)?;
+            }
+            Ok(below)
+        }
+        NodeKind::Light(light) => check_light(light).map(|()| below),
+        NodeKind::Environment(environment) => check_environment(environment).map(|()| below),
+    }
+}
+
+fn check_attributes(ir: &Ir, bsdf: Option<u32>, emitter: Option<u32>) -> Check {
+    require(bsdf.is_none_or(|id| (id as usize) < ir.bsdfs.len()), "there is no such bsdf")?;
+    require(emitter.is_none_or(|id| (id as usize) < ir.emitters.len()), "there is no such emitter")
+}
+
+fn check_leaf(ir: &Ir, leaf: &Leaf) -> Check<Contents> {
+    let (Leaf::Solid { parent_from_object, material, .. } | Leaf::Surface { parent_from_object, material, .. }) = leaf;
+    require(invert(parent_from_object).is_some(), "the map is not finite and invertible")?;
+    let known = |MaterialId(id)| (id as usize) < ir.materials.len();
+    require(material.is_none_or(known), "there is no such material")?;
+    match leaf {
+        Leaf::Solid { shape, .. } => {
+            require(shape.is_valid(), "a size is not positive and finite")?;
+            Ok(Contents { solid: true, open: false })
+        }
+        Leaf::Surface { surface, .. } => {
+            check_surface(surface)?;
+            Ok(Contents { solid: false, open: true })
+        }
+    }
+}
+
+fn check_surface(surface: &Surface) -> Check {
+    let finite = |points: &[DVec3]| points.iter().all(|p| p.is_finite());
+    match surface {
+        Surface::Triangle(points) => require(finite(points), "a corner is not finite"),
+        Surface::Quad(points) => require(finite(points), "a corner is not finite"),
+        Surface::Rectangle { width, depth } => {
+            require(positive(*width) && positive(*depth), "a size is not positive and finite")
+        }
+        Surface::Disk { radius } => require(positive(*radius), "a size is not positive and finite"),
+        Surface::Plane => Ok(()),
+        Surface::Mesh { path } => require(!path.is_empty(), "the path is empty"),
+    }
+}
+
+fn positive(x: f64) -> bool {
+    x > 0.0 && x.is_finite()
+}
+
+fn is_unit(v: DVec3) -> bool {
+    (v.length() - 1.0).abs() < 1e-6
+}
+
+fn check_light(light: &Light) -> Check {
+    match light {
+        Light::Point { intensity } => check_spectrum(intensity),
+        Light::Distant { irradiance, direction } => {
+            require(is_unit(*direction), "the direction is not a unit vector")?;
+            check_spectrum(irradiance)
+        }
+    }
+}
+
+fn check_environment(environment: &Environment) -> Check {
+    match environment {
+        Environment::Constant { radiance } => check_spectrum(radiance),
+        Environment::HosekWilkie { turbidity, ground_albedo, sun, scale, .. } => {
+            require(is_unit(*sun), "the sun's direction is not a unit vector")?;
+            require((1.0..=10.0).contains(turbidity), "the turbidity is not in 1..=10")?;
+            require((0.0..=1.0).contains(ground_albedo), "the albedo is not in 0..=1")?;
+            require(*scale >= 0.0 && scale.is_finite(), "the scale is negative or not finite")
+        }
+    }
+}
+
+fn check_bsdf(bsdf: &Bsdf) -> Check {
+    match bsdf {
+        Bsdf::Lambert { reflectance } | Bsdf::Mirror { reflectance } => check_spectrum(reflectance),
+        Bsdf::OrenNayar { reflectance, sigma } => {
+            require(*sigma >= 0.0 && sigma.is_finite(), "sigma is negative or not finite")?;
+            check_spectrum(reflectance)
+        }
+        Bsdf::Dielectric { ior } => check_spectrum(ior),
+        Bsdf::Conductor { eta, k } => check_spectrum(eta).and(check_spectrum(k)),
+    }
+}
+
+fn check_spectrum(spectrum: &Spectrum) -> Check {
+    check_spectrum_at(spectrum, 0)
+}
+
+fn check_spectrum_at(spectrum: &Spectrum, depth: usize) -> Check {
+    require(depth < MAX_SPECTRUM_DEPTH, "a spectrum nests too deeply")?;
+    let finite = |values: &[f64]| require(values.iter().all(|x| x.is_finite()), "a spectrum is not finite");
+    match spectrum {
+        Spectrum::Constant(value) => finite(&[*value]),
+        Spectrum::Tabulated { lambda_nm, values } => {
+            require(!values.is_empty(), "a tabulated spectrum has no knots")?;
+            require(lambda_nm.len() == values.len(), "a tabulated spectrum has columns of unlike length")?;
+            require(lambda_nm.windows(2).all(|w| w[0] < w[1]), "the wavelengths of a spectrum do not increase")?;
+            finite(lambda_nm).and(finite(values))
+        }
+        Spectrum::Blackbody { kelvin } => require(positive(*kelvin), "a temperature is not positive and finite"),
+        Spectrum::Gaussian { center_nm, sigma_nm, peak } => {
+            require(*sigma_nm > 0.0, "the width of a spectrum is not positive")?;
+            finite(&[*center_nm, *sigma_nm, *peak])
+        }
+        Spectrum::Sellmeier { b, c_um2 } => finite(b).and(finite(c_um2)),
+        Spectrum::Cauchy { a, b_um2, c_um4 } => finite(&[*a, *b_um2, *c_um4]),
+        // Infinite coefficients stand for black and white.
+        Spectrum::Sigmoid { coefficients } => {
+            require(coefficients.iter().all(|x| !x.is_nan()), "a spectrum is not a number")
+        }
+        Spectrum::Scaled { factor, spectrum } => finite(&[*factor]).and(check_spectrum_at(spectrum, depth + 1)),
+        Spectrum::Product(a, b) | Spectrum::Sum(a, b) => {
+            check_spectrum_at(a, depth + 1).and_then(|()| check_spectrum_at(b, depth + 1))
+        }
+    }
+}
+
+fn check_camera(camera: &Camera) -> Check {
+    let Camera { projection, eye, target, up, resolution, .. } = camera;
+    require(eye.is_finite() && target.is_finite() && up.is_finite(), "a position is not finite")?;
+    require((*target - *eye).cross(*up).length_squared() > 0.0, "the view direction and up do not span a plane")?;
+    require(resolution.iter().all(|&pixels| pixels > 0), "the image has no pixels")?;
+    match projection {
+        Projection::Perspective { fov } => {
+            require(*fov > 0.0 && *fov < std::f64::consts::PI, "the field of view is not in (0, pi)")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{read, verify};
+
+    fn violations(statements: &str) -> Vec<String> {
+        let text = format!("ir 1\nbsdf b0 = lambert(reflectance: constant(0.5))\n{statements}");
+        let ir = read(&text).unwrap_or_else(|error| panic!("{error} in\n{text}"));
+        verify(&ir).err().unwrap_or_default().iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_sound_scene_verifies() {
+        let text = "%0 = sphere(radius: 1.0) @0:0..1\n%1 = point_light(intensity: constant(1.0)) @0:0..1\n\
+                    %2 = union(%0, %1) @0:0..1\n%3 = half_space() @0:0..1\n%4 = intersection(%2, %3) @0:0..1\nroot %4";
+        assert_eq!(violations(text), Vec::<String>::new());
+    }
+
+    #[test]
+    fn each_broken_invariant_is_named() {
+        let cases = [
+            ("%0 = sphere(radius: -1.0) @0:0..1\nroot %0", "%0: a size is not positive and finite"),
+            ("%0 = sphere(radius: NaN) @0:0..1\nroot %0", "%0: a size is not positive and finite"),
+            (
+                "%0 = box(min: [0.0, 0.0, 0.0], max: [1.0, 0.0, 1.0]) @0:0..1\nroot %0",
+                "%0: a size is not positive and finite",
+            ),
+            (
+                "%0 = half_space(map: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]) @0:0..1\nroot %0",
+                "%0: the map is not finite and invertible",
+            ),
+            ("%0 = plane(at: [inf, 0.0, 0.0]) @0:0..1\nroot %0", "%0: the map is not finite and invertible"),
+            ("%0 = plane() @0:0..1\n%1 = difference(%0) @0:0..1\nroot %1", "%1: an operand is no solid"),
+            (
+                "%0 = half_space() @0:0..1\n%1 = plane() @0:0..1\n%2 = union(%0, %1) @0:0..1\n\
+                 %3 = intersection(%2, %0) @0:0..1\nroot %3",
+                "%3: an operand holds an open surface or a group",
+            ),
+            ("%0 = intersection() @0:0..1\nroot %0", "%0: a Boolean node has no operands"),
+            (
+                "bsdf b1 = mirror(reflectance: tabulated(lambda_nm: [2.0, 1.0], values: [0.0, 0.0]))\n\
+                 %0 = half_space() @0:0..1\nroot %0",
+                "b1: the wavelengths of a spectrum do not increase",
+            ),
+            (
+                "%0 = distant_light(irradiance: constant(1.0), direction: [0.0, 0.0, 2.0]) @0:0..1\nroot %0",
+                "%0: the direction is not a unit vector",
+            ),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(violations(text), [expected], "{text}");
+        }
+    }
+}
