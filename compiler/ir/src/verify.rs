@@ -45,7 +45,7 @@ pub fn verify(ir: &Ir) -> Result<(), Vec<Violation>> {
         found.check(check_attributes(ir, material.bsdf, material.emitter), || format!("m{id}"));
     }
     let mut contents: Vec<Contents> = Vec::with_capacity(ir.nodes.len());
-    for (id, node) in ir.nodes.iter().enumerate() {
+    for id in 0..ir.nodes.len() {
         let content = check_node(ir, id, &contents);
         contents.push(*content.as_ref().unwrap_or(&Contents::default()));
         found.check(content.map(|_| ()), || format!("%{id}"));
