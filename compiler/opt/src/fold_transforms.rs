@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 use crate::pipeline::Log;
 
 /// Solids with fewer leaves are copied instead of instanced.
-const INSTANCE_LEAVES: u64 = 8;
+pub(crate) const INSTANCE_LEAVES: u64 = 8;
 
 enum Task {
     /// `map` indexes the table of maps; 0 is the identity.

@@ -35,15 +35,22 @@
 //! coincide. An object with a transmissive material stands alone, because a union would remove the wall between two
 //! different media (the pass `separate_media`). An explicit `a | b` within one object is always one solid.
 
+mod bound_unbounded;
+mod bounds;
+mod box_tree;
 mod counts;
+mod drop_operands;
+mod flatten;
 mod fold_transforms;
 mod hoist;
 mod intern;
 mod pipeline;
 mod propagate_attributes;
 mod separate_media;
+mod share_subtrees;
 mod split_environments;
 mod split_lights;
+mod split_union;
 
 pub use counts::Counts;
 pub use pipeline::{PASSES, Pass, optimise, optimise_observed};

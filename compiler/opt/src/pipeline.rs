@@ -41,10 +41,40 @@ pub const PASSES: &[Pass] = &[
         run: crate::split_lights::run,
     },
     Pass {
+        name: "share_subtrees",
+        summary: "make equal subtrees one node",
+        lowering: false,
+        run: crate::share_subtrees::run,
+    },
+    Pass {
+        name: "split_union",
+        summary: "split top-level unions into independent solids",
+        lowering: false,
+        run: crate::split_union::run,
+    },
+    Pass {
         name: "fold_transforms",
-        summary: "fold transforms into the leaves",
+        summary: "fold transforms into the leaves, keep instances of large solids",
         lowering: true,
         run: crate::fold_transforms::run,
+    },
+    Pass {
+        name: "flatten",
+        summary: "make nested unions, intersections and differences n-ary",
+        lowering: false,
+        run: crate::flatten::run,
+    },
+    Pass {
+        name: "bound_unbounded",
+        summary: "end unbounded solids where a bounded partner hides it",
+        lowering: false,
+        run: crate::bound_unbounded::run,
+    },
+    Pass {
+        name: "drop_operands",
+        summary: "drop operands that are proved empty, full or absorbed",
+        lowering: false,
+        run: crate::drop_operands::run,
     },
 ];
 

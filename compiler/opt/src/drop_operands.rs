@@ -1,0 +1,193 @@
+//! Drops operands that boxes prove to be empty, full, or absorbed by another.
+//!
+//! Each node has a context, the box in which its points matter (`bound_unbounded`). A leaf outside of its context
+//! is *empty* there, one that covers it is *full*; Boolean nodes follow: a union is full when an operand is, an
+//! intersection empty, a difference empty when its minuend is or a subtrahend is full. In a union, an operand whose box
+//! lies inside of another operand is absorbed.
+//!
+//! All proofs keep a distance ([`pad`](crate::bounds::pad)): touching solids are left alone. So nothing dropped has a
+//! face that coincides with one that stays, and no face that shows changes its material.
+//!
+//! Rewrites: `empty_operand`, `full_operand`, `empty_intersection`, `empty_difference`, `full_union`,
+//! `absorbed_operand`, `repeated_operand`, `empty_solid`, `single_operand`.
+
+use arsc_geometry::{Aabb, Classification, DAffine3};
+use arsc_ir::{Ir, Leaf, NodeId, NodeKind};
+use rustc_hash::FxHashSet;
+
+use crate::bound_unbounded::contexts;
+use crate::bounds::{Placement, bounds, padded, place};
+use crate::box_tree::BoxTree;
+use crate::flatten::collapse;
+use crate::pipeline::Log;
+
+/// Candidates looked at per operand of a union.
+const CANDIDATES: usize = 32;
+/// Trees are searched this deep for a proof that a box is inside.
+const PROOF_DEPTH: usize = 32;
+
+/// What a node is within its context.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Value {
+    Empty,
+    Full,
+    Some,
+}
+
+pub(crate) fn run(mut ir: Ir, log: &mut Log) -> Ir {
+    let bounds = bounds(&ir);
+    let contexts = contexts(&ir, &bounds);
+    let uses = ir.uses();
+    let mut values: Vec<Value> = Vec::with_capacity(ir.nodes.len());
+    for id in 0..ir.nodes.len() {
+        let used = uses[id] > 0;
+        values.push(if used { simplify(&mut ir, id, &contexts[id], &values, log) } else { Value::Some });
+        if used
+            && let NodeKind::Union(of) = &ir.nodes[id].kind
+            && of.len() > 1
+        {
+            let kept = without_absorbed(&ir, of, &bounds, log);
+            ir.nodes[id].kind = NodeKind::Union(kept);
+        }
+    }
+    ir.compact();
+    collapse(&mut ir, log);
+    ir
+}
+
+/// The value of a leaf in its context.
+pub(crate) fn leaf_value(leaf: &Leaf, context: &Aabb) -> Value {
+    let Some(Placement::Certain(placed)) = place(leaf, &DAffine3::IDENTITY) else { return Value::Some };
+    match placed.classify(&padded(context)) {
+        Classification::Outside => Value::Empty,
+        Classification::Inside => Value::Full,
+        Classification::Boundary => Value::Some,
+    }
+}
+
+fn simplify(ir: &mut Ir, id: usize, context: &Aabb, values: &[Value], log: &mut Log) -> Value {
+    let value = |operand: NodeId| values[operand.index()];
+    match &mut ir.nodes[id].kind {
+        NodeKind::Leaf(leaf) => leaf_value(leaf, context),
+        NodeKind::Union(of) => {
+            if let Some(&full) = of.iter().find(|&&operand| value(operand) == Value::Full) {
+                if of.len() > 1 {
+                    log.fire("full_union");
+                    *of = vec![full];
+                }
+                return Value::Full;
+            }
+            drop_all(of, |operand| value(operand) == Value::Empty, "empty_operand", log);
+            if of.is_empty() { Value::Empty } else { Value::Some }
+        }
+        NodeKind::Intersection(of) => {
+            if of.iter().any(|&operand| value(operand) == Value::Empty) {
+                log.fire("empty_intersection");
+                return Value::Empty;
+            }
+            if of.iter().all(|&operand| value(operand) == Value::Full) {
+                return Value::Full;
+            }
+            drop_all(of, |operand| value(operand) == Value::Full, "full_operand", log);
+            Value::Some
+        }
+        NodeKind::Difference(of) => {
+            if value(of[0]) == Value::Empty || of[1..].iter().any(|&operand| value(operand) == Value::Full) {
+                log.fire("empty_difference");
+                return Value::Empty;
+            }
+            let minuend = of[0];
+            let mut subtrahends = of.split_off(1);
+            drop_all(&mut subtrahends, |operand| value(operand) == Value::Empty, "empty_operand", log);
+            of.append(&mut subtrahends);
+            if of.len() == 1 { value(minuend) } else { Value::Some }
+        }
+        NodeKind::Group(of) => {
+            drop_all(of, |member| value(member) == Value::Empty, "empty_solid", log);
+            Value::Some
+        }
+        NodeKind::Transform { child, .. } => match value(*child) {
+            Value::Empty => Value::Empty,
+            _ => Value::Some,
+        },
+        NodeKind::Attributes { .. } | NodeKind::Light(_) | NodeKind::Environment(_) => Value::Some,
+    }
+}
+
+fn drop_all(of: &mut Vec<NodeId>, unwanted: impl Fn(NodeId) -> bool, rewrite: &'static str, log: &mut Log) {
+    let before = of.len();
+    of.retain(|&operand| !unwanted(operand));
+    log.fire_times(rewrite, before - of.len());
+}
+
+fn without_absorbed(ir: &Ir, of: &[NodeId], bounds: &[Aabb], log: &mut Log) -> Vec<NodeId> {
+    let mut seen = FxHashSet::default();
+    let mut kept: Vec<NodeId> = of.iter().copied().filter(|&operand| seen.insert(operand)).collect();
+    log.fire_times("repeated_operand", of.len() - kept.len());
+    let absorbed = absorbed(ir, &kept, bounds);
+    log.fire_times("absorbed_operand", absorbed.iter().flatten().count());
+    let mut absorbed = absorbed.into_iter();
+    kept.retain(|_| absorbed.next().flatten().is_none());
+    kept
+}
+
+/// For each operand of a union, another operand inside of which its box lies.
+///
+/// Being inside is strict, so the relation has no cycles and its last elements stay.
+pub(crate) fn absorbed(ir: &Ir, of: &[NodeId], bounds: &[Aabb]) -> Vec<Option<usize>> {
+    let boxes: Vec<Aabb> = of.iter().map(|operand| bounds[operand.index()]).collect();
+    let tree = BoxTree::new(&boxes);
+    let absorber = |i: usize| {
+        let cell = padded(&boxes[i]);
+        let mut candidates = CANDIDATES;
+        let mut found = None;
+        tree.overlapping(&cell, |j| {
+            if j != i && boxes[j].contains_box(&cell) {
+                candidates -= 1;
+                if is_inside(ir, of[j], &cell, 0) {
+                    found = Some(j);
+                }
+            }
+            found.is_none() && candidates > 0
+        });
+        found
+    };
+    (0..of.len()).map(|i| if boxes[i].is_finite() { absorber(i) } else { None }).collect()
+}
+
+/// The box certainly lies in the solid.
+fn is_inside(ir: &Ir, id: NodeId, cell: &Aabb, depth: usize) -> bool {
+    let inside = |&id: &NodeId| is_inside(ir, id, cell, depth + 1);
+    if depth > PROOF_DEPTH {
+        return false;
+    }
+    match ir.kind(id) {
+        NodeKind::Leaf(leaf) => classify(leaf, cell) == Classification::Inside,
+        NodeKind::Union(of) => of.iter().take(CANDIDATES).any(inside),
+        NodeKind::Intersection(of) => of.iter().all(inside),
+        NodeKind::Difference(of) => inside(&of[0]) && of[1..].iter().all(|&b| is_outside(ir, b, cell, depth + 1)),
+        _ => false,
+    }
+}
+
+/// The box certainly lies outside of the solid.
+fn is_outside(ir: &Ir, id: NodeId, cell: &Aabb, depth: usize) -> bool {
+    let outside = |&id: &NodeId| is_outside(ir, id, cell, depth + 1);
+    if depth > PROOF_DEPTH {
+        return false;
+    }
+    match ir.kind(id) {
+        NodeKind::Leaf(leaf) => classify(leaf, cell) == Classification::Outside,
+        NodeKind::Union(of) => of.iter().all(outside),
+        NodeKind::Intersection(of) => of.iter().any(outside),
+        NodeKind::Difference(of) => outside(&of[0]),
+        _ => false,
+    }
+}
+
+fn classify(leaf: &Leaf, cell: &Aabb) -> Classification {
+    match place(leaf, &DAffine3::IDENTITY) {
+        Some(Placement::Certain(placed)) => placed.classify(cell),
+        _ => Classification::Boundary,
+    }
+}
