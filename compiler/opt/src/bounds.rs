@@ -1,6 +1,6 @@
 //! Boxes that hold the solids of the node table.
 
-use arsc_geometry::{Aabb, DAffine3, Placed, Shape};
+use arsc_geometry::{Aabb, DAffine3, Placed};
 use arsc_ir::{Ir, Leaf, NodeKind};
 
 /// The box of each node in its own frame (of the frame that its parent sees); empty for what is no solid.
@@ -28,36 +28,18 @@ pub(crate) fn bounds(ir: &Ir) -> Vec<Aabb> {
 
 /// The box of a leaf under one map more; empty for surfaces.
 pub(crate) fn leaf_bounds(leaf: &Leaf, world_from_parent: &DAffine3) -> Aabb {
-    match place(leaf, world_from_parent) {
-        Some(placed) => *placed.bounds(),
-        None => Aabb::EMPTY,
+    match (leaf, place(leaf, world_from_parent)) {
+        (Leaf::Surface { .. }, _) => Aabb::EMPTY,
+        (_, Some(placed)) => *placed.bounds(),
+        (_, None) => Aabb::EVERYTHING,
     }
 }
 
-/// A solid leaf in its place. Verified leaves can always be placed, but for a product of maps that is singular in
-/// double precision; then the box is everything and nothing is proved about the leaf.
-pub(crate) fn place(leaf: &Leaf, world_from_parent: &DAffine3) -> Option<Placement> {
+/// A solid leaf in its place under one map more. Verified leaves can be placed, but for a product of maps that is
+/// singular in double precision: then nothing is proved about the leaf.
+pub(crate) fn place(leaf: &Leaf, world_from_parent: &DAffine3) -> Option<Placed> {
     let Leaf::Solid { shape, parent_from_object, .. } = leaf else { return None };
-    Some(match Placed::new(*shape, *world_from_parent * *parent_from_object) {
-        Ok(placed) => Placement::Certain(placed),
-        Err(_) => Placement::Unknown(*shape),
-    })
-}
-
-/// A leaf's place, if double precision can tell.
-#[derive(Clone, Debug)]
-pub(crate) enum Placement {
-    Certain(Placed),
-    Unknown(Shape),
-}
-
-impl Placement {
-    pub fn bounds(&self) -> &Aabb {
-        match self {
-            Placement::Certain(placed) => placed.bounds(),
-            Placement::Unknown(_) => &Aabb::EVERYTHING,
-        }
-    }
+    Placed::new(*shape, *world_from_parent * *parent_from_object).ok()
 }
 
 /// A length that rounding near this box stays far below: 1e-9 of its largest finite coordinate.

@@ -16,13 +16,15 @@ use arsc_ir::{Ir, Leaf, NodeId, NodeKind};
 use rustc_hash::FxHashSet;
 
 use crate::bound_unbounded::contexts;
-use crate::bounds::{Placement, bounds, padded, place};
+use crate::bounds::{bounds, padded, place};
 use crate::box_tree::BoxTree;
 use crate::flatten::collapse;
 use crate::pipeline::Log;
 
 /// Candidates looked at per operand of a union.
 const CANDIDATES: usize = 32;
+/// Leaves looked at per operand of a union, on average.
+const CLASSIFICATIONS: usize = 256;
 /// Trees are searched this deep for a proof that a box is inside.
 const PROOF_DEPTH: usize = 32;
 
@@ -57,7 +59,7 @@ pub(crate) fn run(mut ir: Ir, log: &mut Log) -> Ir {
 
 /// The value of a leaf in its context.
 pub(crate) fn leaf_value(leaf: &Leaf, context: &Aabb) -> Value {
-    let Some(Placement::Certain(placed)) = place(leaf, &DAffine3::IDENTITY) else { return Value::Some };
+    let Some(placed) = place(leaf, &DAffine3::IDENTITY) else { return Value::Some };
     match placed.classify(&padded(context)) {
         Classification::Outside => Value::Empty,
         Classification::Inside => Value::Full,
@@ -137,14 +139,15 @@ fn without_absorbed(ir: &Ir, of: &[NodeId], bounds: &[Aabb], log: &mut Log) -> V
 pub(crate) fn absorbed(ir: &Ir, of: &[NodeId], bounds: &[Aabb]) -> Vec<Option<usize>> {
     let boxes: Vec<Aabb> = of.iter().map(|operand| bounds[operand.index()]).collect();
     let tree = BoxTree::new(&boxes);
-    let absorber = |i: usize| {
+    let mut proof = Proof { ir, classifications: CLASSIFICATIONS * of.len() };
+    let mut absorber = |i: usize| {
         let cell = padded(&boxes[i]);
         let mut candidates = CANDIDATES;
         let mut found = None;
         tree.overlapping(&cell, |j| {
             if j != i && boxes[j].contains_box(&cell) {
                 candidates -= 1;
-                if is_inside(ir, of[j], &cell, 0) {
+                if proof.inside(of[j], &cell, 0) {
                     found = Some(j);
                 }
             }
@@ -155,39 +158,51 @@ pub(crate) fn absorbed(ir: &Ir, of: &[NodeId], bounds: &[Aabb]) -> Vec<Option<us
     (0..of.len()).map(|i| if boxes[i].is_finite() { absorber(i) } else { None }).collect()
 }
 
-/// The box certainly lies in the solid.
-fn is_inside(ir: &Ir, id: NodeId, cell: &Aabb, depth: usize) -> bool {
-    let inside = |&id: &NodeId| is_inside(ir, id, cell, depth + 1);
-    if depth > PROOF_DEPTH {
-        return false;
-    }
-    match ir.kind(id) {
-        NodeKind::Leaf(leaf) => classify(leaf, cell) == Classification::Inside,
-        NodeKind::Union(of) => of.iter().take(CANDIDATES).any(inside),
-        NodeKind::Intersection(of) => of.iter().all(inside),
-        NodeKind::Difference(of) => inside(&of[0]) && of[1..].iter().all(|&b| is_outside(ir, b, cell, depth + 1)),
-        _ => false,
-    }
+/// Proofs about boxes and whole trees, with a budget.
+pub(crate) struct Proof<'a> {
+    pub ir: &'a Ir,
+    pub classifications: usize,
 }
 
-/// The box certainly lies outside of the solid.
-fn is_outside(ir: &Ir, id: NodeId, cell: &Aabb, depth: usize) -> bool {
-    let outside = |&id: &NodeId| is_outside(ir, id, cell, depth + 1);
-    if depth > PROOF_DEPTH {
-        return false;
+impl Proof<'_> {
+    /// The box certainly lies in the solid.
+    pub fn inside(&mut self, id: NodeId, cell: &Aabb, depth: usize) -> bool {
+        if depth > PROOF_DEPTH {
+            return false;
+        }
+        let ir = self.ir;
+        match ir.kind(id) {
+            NodeKind::Leaf(leaf) => self.classify(leaf, cell) == Classification::Inside,
+            NodeKind::Union(of) => of.iter().any(|&operand| self.inside(operand, cell, depth + 1)),
+            NodeKind::Intersection(of) => of.iter().all(|&operand| self.inside(operand, cell, depth + 1)),
+            NodeKind::Difference(of) => {
+                self.inside(of[0], cell, depth + 1)
+                    && of[1..].iter().all(|&operand| self.outside(operand, cell, depth + 1))
+            }
+            _ => false,
+        }
     }
-    match ir.kind(id) {
-        NodeKind::Leaf(leaf) => classify(leaf, cell) == Classification::Outside,
-        NodeKind::Union(of) => of.iter().all(outside),
-        NodeKind::Intersection(of) => of.iter().any(outside),
-        NodeKind::Difference(of) => outside(&of[0]),
-        _ => false,
-    }
-}
 
-fn classify(leaf: &Leaf, cell: &Aabb) -> Classification {
-    match place(leaf, &DAffine3::IDENTITY) {
-        Some(Placement::Certain(placed)) => placed.classify(cell),
-        _ => Classification::Boundary,
+    /// The box certainly lies outside of the solid.
+    pub fn outside(&mut self, id: NodeId, cell: &Aabb, depth: usize) -> bool {
+        if depth > PROOF_DEPTH {
+            return false;
+        }
+        let ir = self.ir;
+        match ir.kind(id) {
+            NodeKind::Leaf(leaf) => self.classify(leaf, cell) == Classification::Outside,
+            NodeKind::Union(of) => of.iter().all(|&operand| self.outside(operand, cell, depth + 1)),
+            NodeKind::Intersection(of) => of.iter().any(|&operand| self.outside(operand, cell, depth + 1)),
+            NodeKind::Difference(of) => self.outside(of[0], cell, depth + 1),
+            _ => false,
+        }
+    }
+
+    fn classify(&mut self, leaf: &Leaf, cell: &Aabb) -> Classification {
+        if self.classifications == 0 {
+            return Classification::Boundary;
+        }
+        self.classifications -= 1;
+        place(leaf, &DAffine3::IDENTITY).map_or(Classification::Boundary, |placed| placed.classify(cell))
     }
 }

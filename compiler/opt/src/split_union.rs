@@ -20,7 +20,7 @@ use arsc_diagnostics::Span;
 use arsc_geometry::{Aabb, Classification, DAffine3};
 use arsc_ir::{Ir, Node, NodeId, NodeKind};
 
-use crate::bounds::{Placement, bounds, leaf_bounds, padded, place};
+use crate::bounds::{bounds, leaf_bounds, padded, place};
 use crate::box_tree::BoxTree;
 use crate::fold_transforms::INSTANCE_LEAVES;
 use crate::pipeline::Log;
@@ -123,10 +123,8 @@ fn independent(ir: &Ir, parts: &[Part], local: &[Aabb]) -> Vec<Vec<Part>> {
 fn apart(ir: &Ir, parts: [&Part; 2], boxes: [&Aabb; 2]) -> bool {
     let outside = |part: &Part, cell: &Aabb| {
         let NodeKind::Leaf(leaf) = ir.kind(part.id) else { return false };
-        match place(leaf, &part.map.unwrap_or(DAffine3::IDENTITY)) {
-            Some(Placement::Certain(placed)) => placed.classify(cell) == Classification::Outside,
-            _ => false,
-        }
+        place(leaf, &part.map.unwrap_or(DAffine3::IDENTITY))
+            .is_some_and(|placed| placed.classify(cell) == Classification::Outside)
     };
     outside(parts[0], boxes[1]) || outside(parts[1], boxes[0])
 }
