@@ -81,6 +81,10 @@ impl SourceFile {
         LineColumn { line: line + 1, column: self.text[start..end].chars().count() + 1 }
     }
 
+    pub fn line_count(&self) -> usize {
+        self.line_starts.len()
+    }
+
     /// The byte range of a one-based line, without its line break.
     pub fn line_range(&self, line: usize) -> std::ops::Range<usize> {
         let start = self.line_starts[line - 1] as usize;

@@ -182,23 +182,25 @@ impl Context<'_> {
         }
     }
 
-    /// `1.` and `.5`.
+    /// `1.` and `.5`: the grammar stops at the point, or behind it where it looks for a field's name.
     fn number(&self) -> Option<Slip> {
-        if self.token != "." {
-            return None;
+        let point = match self.slice[..self.at].strip_suffix('.') {
+            Some(before) => before.len(),
+            None if self.token == "." => self.at,
+            None => return None,
+        };
+        let is_digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
+        if is_digit(self.slice[..point].chars().next_back()) {
+            let replace = (point + 1, point + 1, "0");
+            return Slip::replacing("a number ends with a digit", "no digit after the point", "write `1.0`", replace);
         }
-        let after = self.slice[self.at + 1..].bytes().next();
-        if after.is_some_and(|b| b.is_ascii_digit()) {
-            let message = "a number starts with a digit";
-            return Slip::replacing(message, "no digit before the point", "write `0.5`", (self.at, self.at, "0"));
-        }
-        if self.slice[..self.at].ends_with(|c: char| c.is_ascii_digit()) {
-            let message = "a number ends with a digit";
+        if is_digit(self.slice[point + 1..].chars().next()) {
+            let replace = (point, point, "0");
             return Slip::replacing(
-                message,
-                "no digit after the point",
-                "write `1.0`",
-                (self.at + 1, self.at + 1, "0"),
+                "a number starts with a digit",
+                "no digit before the point",
+                "write `0.5`",
+                replace,
             );
         }
         None
@@ -216,7 +218,12 @@ impl Context<'_> {
         }
         let items = ["import", "param", "let", "fn", "type", "scene", "camera", "actions", "allow"];
         if let Some(item) = closest(word, items).filter(|item| *item != word) {
-            return Slip::replacing(message, "misspelt?", &format!("did you mean `{item}`?"), (0, word.len(), item));
+            return Slip::replacing(
+                message,
+                "misspelt?",
+                &format!("items begin with a keyword such as `{item}`"),
+                (0, word.len(), item),
+            );
         }
         if self.slice[word.len()..].trim_start().starts_with('=') && !word.is_empty() {
             return Slip::replacing(

@@ -15,6 +15,9 @@ pub(crate) struct Scan {
     pub diagnostics: Vec<Diagnostic>,
     /// Offsets at which open blocks are taken to be closed, ascending; the last is the length of the text.
     pub stops: Vec<usize>,
+    /// Opening brackets whose line looks complete but for the closing one. The grammar sees another character in
+    /// their place, so that the damage ends with the line.
+    pub masked: Vec<usize>,
     /// The text cannot be given to the grammar: nesting too deep, or no text at all.
     pub unreadable: bool,
 }
@@ -53,7 +56,13 @@ struct Scanner<'t> {
 
 /// Looks over the text once.
 pub(crate) fn scan(source: SourceId, text: &str) -> Scan {
-    let found = Scan { comments: Vec::new(), diagnostics: Vec::new(), stops: Vec::new(), unreadable: false };
+    let found = Scan {
+        comments: Vec::new(),
+        diagnostics: Vec::new(),
+        stops: Vec::new(),
+        masked: Vec::new(),
+        unreadable: false,
+    };
     let mut scanner = Scanner {
         source,
         text,
@@ -301,6 +310,11 @@ impl Scanner<'_> {
             .label(self.span(open.at, open.at + 1), "opened here");
         if open.bracket != b'{' {
             let end = self.end_of_line_content(open.at);
+            if !self.text[open.at..end]
+                .ends_with(['(', '[', '{', ',', '=', ':', '+', '-', '*', '/', '|', '&', '>', '<'])
+            {
+                self.found.masked.push(open.at);
+            }
             diagnostic = diagnostic.label(self.span(end, end), format!("`{closing}` may be missing here"));
         } else if let Some(at) = at {
             diagnostic = diagnostic.label(self.span(at, at + 1), format!("`{closing}` is missing before this"));

@@ -6,8 +6,10 @@
 
 mod args;
 mod bug;
+mod check;
 mod compile;
 mod exit;
+mod explain;
 mod failure;
 mod files;
 mod host;
@@ -30,6 +32,10 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Checks scripts: syntax, types, limits, and lints of text, geometry and light
+    Check(check::Args),
+    /// Explains the code of a finding
+    Explain(explain::Args),
     Render(render::Args),
     Probe(probe::Args),
 }
@@ -42,6 +48,8 @@ fn main() -> std::process::ExitCode {
 
 fn run(cli: Cli) -> Exit {
     match cli.command {
+        Command::Check(args) => check::run(&args),
+        Command::Explain(args) => explain::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Probe(args) => probe::run(&args),
     }

@@ -55,6 +55,11 @@ impl Code {
         self.0.severity
     }
 
+    /// What `docs/diagnostics/` says about it: what it means, why it matters, a bad and a good example.
+    pub fn page(self) -> Option<&'static str> {
+        PAGES.iter().find(|(id, _)| *id == self.id()).map(|(_, page)| *page)
+    }
+
     pub fn is_lint(self) -> bool {
         self.0.severity != Severity::Error
     }
@@ -79,6 +84,9 @@ impl fmt::Display for Code {
         write!(f, "arsl::{}", self.0.id)
     }
 }
+
+/// The pages of `docs/diagnostics/`: id, and Markdown; ascending by id.
+const PAGES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/pages.rs"));
 
 /// Every registered code, in the order of the tables.
 pub fn all() -> impl Iterator<Item = Code> {

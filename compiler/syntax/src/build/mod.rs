@@ -12,6 +12,8 @@ mod pattern;
 mod stmt;
 mod types;
 
+use std::borrow::Cow;
+
 use arsc_diagnostics::{Applicability, Diagnostic, SourceId, Span, codes};
 use pest::Parser;
 
@@ -22,7 +24,8 @@ use crate::{Parsed, diagnose, scan};
 /// Reads a file.
 pub(crate) fn module(source: SourceId, text: &str) -> Parsed {
     let found = scan::scan(source, text);
-    let mut builder = Builder::new(source, text, found.diagnostics);
+    let readable = masked(text, &found.masked);
+    let mut builder = Builder::new(source, &readable, found.diagnostics);
     let mut items = Vec::new();
     if !found.unreadable {
         let mut start = 0;
@@ -45,10 +48,11 @@ pub(crate) fn module(source: SourceId, text: &str) -> Parsed {
 pub(crate) fn expression(source: SourceId, text: &str) -> (Expr, Vec<Diagnostic>) {
     let found = scan::scan(source, text);
     let span = Span::new(source, 0, text.len());
-    let mut builder = Builder::new(source, text, found.diagnostics);
+    let readable = masked(text, &found.masked);
+    let mut builder = Builder::new(source, &readable, found.diagnostics);
     let mut expr = Expr { kind: ExprKind::Error, span };
     if !found.unreadable {
-        match Grammar::parse(Rule::strict_expr, text) {
+        match Grammar::parse(Rule::strict_expr, &readable) {
             Ok(mut pairs) => {
                 let inner = pairs.next().and_then(|strict| strict.into_inner().next());
                 if let Some(pair) = inner {
@@ -59,6 +63,15 @@ pub(crate) fn expression(source: SourceId, text: &str) -> (Expr, Vec<Diagnostic>
         }
     }
     (expr, builder.finish())
+}
+
+/// The text with another character, one that no rule takes, in the place of some brackets.
+fn masked<'t>(text: &'t str, brackets: &[usize]) -> Cow<'t, str> {
+    let mut text = Cow::Borrowed(text);
+    for &at in brackets {
+        text.to_mut().replace_range(at..at + 1, "\u{1}");
+    }
+    text
 }
 
 pub(crate) struct Builder<'t> {
