@@ -15,6 +15,8 @@ mod ply;
 mod sequence;
 mod settings;
 mod stage;
+#[cfg(test)]
+mod tests;
 
 pub use error::AssemblyError;
 pub use host::{Host, HostError, OpenFile};

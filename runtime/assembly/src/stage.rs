@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 use arsc_accel::{BuildOptions, Csg, Scene, SceneGeometry, Solid, Strategy};
-use arsc_geometry::{Aabb, Placed};
+use arsc_geometry::{Aabb, DVec3, Placed};
 use arsc_ir::Ir;
 use arsc_render::{Camera, LightSource, World};
 
@@ -76,10 +76,10 @@ impl<'a> Stage<'a> {
     pub fn say_bounds(&self, strategy: Strategy) -> Result<(), AssemblyError> {
         let world = self.world(strategy)?;
         let bounds = world.geometry.bounds();
-        self.host.say(&format!("bounds of the scene: {} to {}", bounds.min, bounds.max));
+        self.host.say(&format!("bounds of the scene: {}", words(&bounds)));
         for (i, solid) in self.geometry.solids.iter().enumerate() {
             let bounds = solid_bounds(&solid.tree, solid);
-            self.host.say(&format!("  solid {i}, {} leaves: {} to {}", solid.leaves.len(), bounds.min, bounds.max));
+            self.host.say(&format!("  solid {i}, {} leaves: {}", solid.leaves.len(), words(&bounds)));
         }
         Ok(())
     }
@@ -118,6 +118,14 @@ fn solid_bounds(tree: &Csg, solid: &Solid) -> Aabb {
         Csg::Intersection(operands) => operands.iter().map(of).fold(Aabb::EVERYTHING, |hull, b| hull.intersection(&b)),
         Csg::Difference(first, _) => of(first),
     }
+}
+
+/// Six digits, and zero for what is nothing beside the largest coordinate.
+fn words(bounds: &Aabb) -> String {
+    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let rounded = |c: f64| if c.abs() < 1e-9 * largest { 0.0 } else { format!("{c:.5e}").parse().unwrap_or(c) };
+    let corner = |p: DVec3| DVec3::from_array(p.to_array().map(rounded));
+    if bounds.is_empty() { "empty".into() } else { format!("{} to {}", corner(bounds.min), corner(bounds.max)) }
 }
 
 pub fn accel_strategy(strategy: arsc_ir::Strategy) -> Strategy {

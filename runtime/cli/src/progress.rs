@@ -38,13 +38,6 @@ impl Progress {
         Progress { total, done: AtomicU64::new(0), start: Instant::now(), output }
     }
 
-    /// Removes the bar.
-    pub fn finish(&self) {
-        if let Output::Bar(bar) = &self.output {
-            bar.finish_and_clear();
-        }
-    }
-
     fn line(&self, done: u64) -> String {
         let elapsed = self.start.elapsed().as_secs_f64();
         let rate = done as f64 / elapsed.max(1e-9);
@@ -75,6 +68,15 @@ impl arsc_render::Progress for Progress {
 
     fn cancelled(&self) -> bool {
         interrupt::requested()
+    }
+}
+
+/// Removes the bar.
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Output::Bar(bar) = &self.output {
+            bar.finish_and_clear();
+        }
     }
 }
 
