@@ -1,10 +1,15 @@
 //! Whole pictures against closed forms.
 //!
-//! Each test renders a scene whose radiance is known exactly and states its sample count, the standard error that this
-//! count gives, and the chance of a false alarm. Renders are deterministic: a test that passes keeps passing until the
-//! program changes, and the false-alarm rate is that of a change which keeps the distribution.
+//! Every pixel of these pictures has the same expectation, and pixels are independent. An estimate is the mean over
+//! pixels, its standard error comes from their scatter. A test asserts that the estimate lies within five standard
+//! errors of the exact value (false-alarm rate 6e-7 for a change that keeps the distribution), and that the
+//! standard error itself is small, so that the assertion has power. Where stratification makes the error
+//! deterministic, the test states its bound. Counts are camera paths.
 
 mod closed_form {
     mod furnace;
+    mod irradiance;
+    mod specular;
     mod support;
+    mod thermal;
 }

@@ -1,42 +1,88 @@
 //! Small scenes and the means of their pictures.
 
-use arsc_accel::{BuildOptions, Csg, CsgLeaf, MaterialIndex, Scene, SceneGeometry, Shape, Solid};
+use arsc_accel::{
+    BuildOptions, Csg, CsgLeaf, MaterialIndex, Scene, SceneGeometry, Shape, Solid, Surface, SurfaceShape,
+};
 use arsc_image::SpectralImage;
 use arsc_render::{
-    Camera, Environment, Film, FilterShape, Light, Material, PathTraceSettings, ReconstructionFilter, World, path_trace,
+    AreaEmitter, Bsdf, Camera, Environment, FilterShape, Light, Material, PathTraceSettings, ReconstructionFilter,
+    World, path_trace,
 };
-use glam::{DAffine3, DVec3};
+use arsc_spectral::Spectrum;
+use glam::{DAffine3, DMat3, DVec3};
 
-/// A world of solids that consist of one leaf each; materials in the order of the solids.
-pub fn world(
-    shapes: &[(Shape, DAffine3)],
+/// A scene under construction: one material per object.
+#[derive(Default)]
+pub struct Stage {
+    geometry: SceneGeometry,
     materials: Vec<Material>,
-    lights: Vec<Light>,
-    environments: Vec<Environment>,
-) -> World {
-    let solid = |(i, (shape, place)): (usize, &(Shape, DAffine3))| Solid {
-        tree: Csg::Leaf(0),
-        leaves: vec![CsgLeaf { shape: *shape, world_from_object: *place, material: MaterialIndex(i as u32) }],
-    };
-    let solids = shapes.iter().enumerate().map(solid).collect();
-    let geometry = SceneGeometry { solids, ..SceneGeometry::default() };
-    let scene = Scene::build(geometry, BuildOptions::default()).expect("valid geometry");
-    World::new(scene, materials, lights, environments)
+    pub lights: Vec<Light>,
+    pub environments: Vec<Environment>,
 }
 
-pub fn sphere(center: DVec3, radius: f64) -> (Shape, DAffine3) {
-    (Shape::Sphere { radius }, DAffine3::from_translation(center))
+impl Stage {
+    fn add_material(&mut self, material: Material) -> MaterialIndex {
+        self.materials.push(material);
+        MaterialIndex(self.materials.len() as u32 - 1)
+    }
+
+    pub fn solid(&mut self, shape: Shape, world_from_object: DAffine3, material: Material) -> &mut Stage {
+        let material = self.add_material(material);
+        let leaves = vec![CsgLeaf { shape, world_from_object, material }];
+        self.geometry.solids.push(Solid { tree: Csg::Leaf(0), leaves });
+        self
+    }
+
+    pub fn sphere(&mut self, center: DVec3, radius: f64, material: Material) -> &mut Stage {
+        self.solid(Shape::Sphere { radius }, DAffine3::from_translation(center), material)
+    }
+
+    pub fn surface(&mut self, shape: SurfaceShape, place: DAffine3, material: Material) -> &mut Stage {
+        let material = self.add_material(material);
+        self.geometry.surfaces.push(Surface { shape, world_from_object: place, material });
+        self
+    }
+
+    pub fn build(self) -> World {
+        let scene = Scene::build(self.geometry, BuildOptions::default()).expect("valid geometry");
+        World::new(scene, self.materials, self.lights, self.environments)
+    }
 }
 
-/// A square picture of `pixels`² seen from `eye`.
+pub fn constant(value: f64) -> Spectrum {
+    Spectrum::Constant(value)
+}
+
+pub fn lambert(reflectance: f64) -> Material {
+    Material { bsdf: Bsdf::lambert(&constant(reflectance)), emitter: None }
+}
+
+/// Emits towards its normal and scatters nothing.
+pub fn emitter(radiance: Spectrum) -> Material {
+    Material { bsdf: Bsdf::lambert(&constant(0.0)), emitter: Some(AreaEmitter::new(&radiance, false)) }
+}
+
+/// At a height, with the normal downwards.
+pub fn facing_down(center: DVec3) -> DAffine3 {
+    DAffine3 { matrix3: DMat3::from_rotation_x(std::f64::consts::PI), translation: center }
+}
+
+/// A square picture.
 pub fn camera(eye: DVec3, target: DVec3, fov: f64, pixels: u32) -> Camera {
     let filter = ReconstructionFilter::new(FilterShape::Box { radius: 0.5 });
     Camera::perspective(eye, target, DVec3::Z, fov, [pixels; 2], filter)
 }
 
-pub fn render(world: &World, camera: &Camera, samples: u32, max_depth: u32) -> Film {
+/// Looks at a point so closely that all pixels see the same.
+pub fn spot_camera(eye: DVec3, target: DVec3) -> Camera {
+    camera(eye, target, 1e-4, 8)
+}
+
+pub fn render(world: &World, camera: &Camera, samples: u32, max_depth: u32) -> SpectralImage {
     let settings = PathTraceSettings { samples, max_depth, ..PathTraceSettings::default() };
-    path_trace(world, camera, &settings, &())
+    let film = path_trace(world, camera, &settings, &());
+    assert_eq!(film.rejected(), 0, "samples that are not finite or negative");
+    film.to_image()
 }
 
 /// Mean over pixels of every band.
@@ -49,8 +95,34 @@ pub fn band_means(image: &SpectralImage) -> Vec<f64> {
     sums.iter().map(|sum| sum * bands as f64 / image.radiance.len() as f64).collect()
 }
 
-/// Mean over pixels and bands.
-pub fn mean(image: &SpectralImage) -> f64 {
-    let means = band_means(image);
-    means.iter().sum::<f64>() / means.len() as f64
+/// Mean over pixels, of the mean over bands, and its standard error.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    pub mean: f64,
+    pub standard_error: f64,
+}
+
+pub fn estimate(image: &SpectralImage) -> Estimate {
+    estimate_bands(image, 0..image.band_edges_nm.len() - 1)
+}
+
+pub fn estimate_bands(image: &SpectralImage, group: std::ops::Range<usize>) -> Estimate {
+    let bands = image.band_edges_nm.len() - 1;
+    let of_group = |pixel: &[f32]| pixel[group.clone()].iter().map(|r| f64::from(*r)).sum::<f64>();
+    let pixel_mean = |pixel: &[f32]| of_group(pixel) / group.len() as f64;
+    let values: Vec<f64> = image.radiance.chunks(bands).map(pixel_mean).collect();
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    Estimate { mean, standard_error: (variance / n).sqrt() }
+}
+
+impl Estimate {
+    /// Five standard errors (and a millionth, for single precision), each at most `power` of the value.
+    pub fn assert_is(&self, exact: f64, power: f64) {
+        let Estimate { mean, standard_error } = *self;
+        assert!(standard_error <= power * exact, "no power: {self:?} for {exact}");
+        let bound = 5.0 * standard_error + 1e-6 * exact;
+        assert!((mean - exact).abs() <= bound, "{self:?} instead of {exact}: {:.2e}", mean / exact - 1.0);
+    }
 }
