@@ -81,7 +81,7 @@ impl Tile {
             radiance
         } else {
             self.rejected += 1;
-            radiance.map(|r| if r >= 0.0 && r < f32::INFINITY { r } else { 0.0 })
+            radiance.map(|r| if (0.0..f32::INFINITY).contains(&r) { r } else { 0.0 })
         };
         let pixel = (y * self.width + x) as usize;
         let row = pixel * self.bands.count;
@@ -212,12 +212,13 @@ fn fill_bands(sums: &[[f32; 2]], radiance: &mut [f32]) {
     let mut last: Option<usize> = None;
     for i in (0..sums.len()).filter(|i| sums[*i][1] > 0.0) {
         radiance[i] = value(i);
-        let from = last.map_or(0, |last| last + 1);
-        for gap in from..i {
-            radiance[gap] = match last {
-                None => value(i),
-                Some(last) => value(last) + (value(i) - value(last)) * (gap - last) as f32 / (i - last) as f32,
-            };
+        match last {
+            None => radiance[..i].fill(value(i)),
+            Some(last) => {
+                let slope = (value(i) - value(last)) / (i - last) as f32;
+                let gap = radiance[last + 1..i].iter_mut().enumerate();
+                gap.for_each(|(k, r)| *r = value(last) + slope * (k + 1) as f32);
+            }
         }
         last = Some(i);
     }

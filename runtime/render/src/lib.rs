@@ -6,6 +6,8 @@
 
 pub mod bsdf;
 mod camera;
+#[cfg(test)]
+mod conformance;
 mod emitter;
 mod film;
 mod filter;

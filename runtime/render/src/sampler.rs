@@ -122,14 +122,15 @@ mod tests {
     #[test]
     fn pairs_pixels_and_seeds_are_decorrelated() {
         let base = |i| Sampler::new(1, [10, 20], i).pair(4);
-        let others: [(&str, fn(u32) -> [f64; 2]); 5] = [
-            ("pair", |i| Sampler::new(1, [10, 20], i).pair(5)),
-            ("column", |i| Sampler::new(1, [11, 20], i).pair(4)),
-            ("row", |i| Sampler::new(1, [10, 21], i).pair(4)),
-            ("transposed", |i| Sampler::new(1, [20, 10], i).pair(4)),
-            ("seed", |i| Sampler::new(1 << 32, [10, 20], i).pair(4)),
+        let others = [
+            ("pair", 1, [10, 20], 5),
+            ("column", 1, [11, 20], 4),
+            ("row", 1, [10, 21], 4),
+            ("transposed", 1, [20, 10], 4),
+            ("seed", 1 << 32, [10, 20], 4),
         ];
-        for (name, other) in others {
+        for (name, seed, pixel, pair) in others {
+            let other = |i| Sampler::new(seed, pixel, i).pair(pair);
             for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let mean = (0..4096).map(|i| base(i)[a] * other(i)[b]).sum::<f64>() / 4096.0;
                 assert!((mean - 0.25).abs() < 0.017, "{name}, coordinates {a} and {b}: {mean}");

@@ -1,0 +1,168 @@
+//! The suite for bsdfs.
+
+use std::f64::consts::FRAC_PI_2;
+
+use arsc_spectral::{SampledWavelengths, Spectrum};
+use glam::DVec3;
+use rand::Rng;
+
+use super::{assert_directions_follow, mean, pair, random};
+use crate::bsdf::Bsdf;
+
+/// From the zenith to almost grazing, above the surface and below.
+fn directions() -> Vec<DVec3> {
+    let angles = [0.0, 0.3, 0.8, 1.2, 1.5, FRAC_PI_2 - 1e-4, FRAC_PI_2 - 1e-8];
+    let above = angles.iter().enumerate().map(|(i, angle)| {
+        let (sin, cos) = (i as f64 * 1.3).sin_cos();
+        DVec3::new(angle.sin() * cos, angle.sin() * sin, angle.cos())
+    });
+    above.flat_map(|w| [w, DVec3::new(w.x, w.y, -w.z)]).collect()
+}
+
+fn wavelengths() -> SampledWavelengths {
+    SampledWavelengths::fixed([420.0, 530.0, 600.0, 700.0])
+}
+
+/// Everything at once.
+fn assert_conforms(bsdf: &Bsdf) {
+    for wo in directions() {
+        if !bsdf.is_specular() {
+            let name = format!("{bsdf:?} at {wo}");
+            let sample = |random: &mut _| {
+                let (u, lobe) = (pair(random), random.random());
+                bsdf.sample(wo, u, lobe, &wavelengths()).map(|sample| sample.wi)
+            };
+            assert_directions_follow(&name, sample, |wi| bsdf.pdf(wo, wi));
+            samples_agree_with_values(bsdf, wo);
+        }
+        gains_no_energy(bsdf, wo);
+    }
+    is_reciprocal(bsdf);
+    survives_grazing(bsdf);
+}
+
+/// The sample's weight is f cos / pdf, its pdf is that of `pdf`, and it is on the side of `wo`.
+fn samples_agree_with_values(bsdf: &Bsdf, wo: DVec3) {
+    let (mut random, w) = (random(), wavelengths());
+    for _ in 0..1000 {
+        let Some(sample) = bsdf.sample(wo, pair(&mut random), random.random(), &w) else { continue };
+        let pdf = bsdf.pdf(wo, sample.wi);
+        assert!((sample.pdf / pdf - 1.0).abs() < 1e-12, "{bsdf:?}");
+        let expected = bsdf.eval(wo, sample.wi, &w) * (sample.wi.z.abs() / pdf) as f32;
+        assert!((sample.weight - expected).0.abs().max_element() < 1e-5, "{bsdf:?}: {sample:?}, {expected:?}");
+        assert!(!sample.specular && sample.eta == 1.0);
+    }
+}
+
+/// The mean weight of 20 000 samples, radiance counted per squared index, is at most 1 at every wavelength. Wavelengths are
+/// combined as in a path: weight over mean path pdf.
+fn gains_no_energy(bsdf: &Bsdf, wo: DVec3) {
+    for component in 0..4 {
+        let (mut random, w) = (random(), wavelengths());
+        let (mean, error) = mean((0..20_000).map(|_| {
+            // Rotated, so that every wavelength is the hero equally often.
+            let hero = random.random_range(0..4usize);
+            let lambda = w.lambda_nm.to_array();
+            let rotated = SampledWavelengths::fixed(std::array::from_fn(|i| f64::from(lambda[(i + hero) % 4])));
+            bsdf.sample(wo, pair(&mut random), random.random(), &rotated).map_or(0.0, |sample| {
+                let weight = sample.weight.0.to_array()[(component + 4 - hero) % 4] / sample.path_pdf.mean();
+                f64::from(weight) * sample.eta * sample.eta
+            })
+        }));
+        assert!(mean <= 1.0 + 5.0 * error + 1e-6, "{bsdf:?} returns {mean} +- {error} of what comes from {wo}");
+    }
+}
+
+fn is_reciprocal(bsdf: &Bsdf) {
+    let w = wavelengths();
+    for a in directions() {
+        for b in directions() {
+            let difference = (bsdf.eval(a, b, &w) - bsdf.eval(b, a, &w)).0.abs().max_element();
+            assert!(difference < 1e-6, "{bsdf:?}: f({a}, {b}) and f({b}, {a}) differ by {difference}");
+        }
+    }
+}
+
+/// Nothing but finite numbers and unit vectors, whatever the direction.
+fn survives_grazing(bsdf: &Bsdf) {
+    let (mut random, w) = (random(), wavelengths());
+    for z in [0.0, 1e-300, 1e-18, 1e-9, -1e-9, -1e-300, 1.0, -1.0f64] {
+        let wo = DVec3::new((1.0 - z * z).sqrt(), 0.0, z);
+        for _ in 0..100 {
+            let u = [random.random(), [0.0, 1.0 - 1e-10, random.random()][random.random_range(0..3)]];
+            let Some(sample) = bsdf.sample(wo, u, random.random(), &w) else { continue };
+            assert!(sample.weight.is_valid() && sample.path_pdf.is_valid(), "{bsdf:?} at {wo}: {sample:?}");
+            assert!((sample.wi.length() - 1.0).abs() < 1e-9 && sample.pdf > 0.0, "{bsdf:?} at {wo}: {sample:?}");
+            assert!(bsdf.eval(wo, sample.wi, &w).is_valid() && bsdf.pdf(wo, sample.wi).is_finite());
+        }
+    }
+}
+
+fn constant(value: f64) -> Spectrum {
+    Spectrum::Constant(value)
+}
+
+#[test]
+fn lambert() {
+    assert_conforms(&Bsdf::lambert(&constant(1.0)));
+    assert_conforms(&Bsdf::lambert(&constant(7.0)));
+}
+
+#[test]
+fn oren_nayar() {
+    for sigma in [0.0, 0.2, 0.5, 1.2] {
+        assert_conforms(&Bsdf::oren_nayar(&constant(1.0), sigma));
+    }
+}
+
+#[test]
+fn mirror() {
+    assert_conforms(&Bsdf::mirror(&constant(1.0)));
+}
+
+#[test]
+fn dielectric() {
+    for ior in [1.0, 1.5, 0.7] {
+        assert_conforms(&Bsdf::dielectric(&constant(ior)));
+    }
+    assert_conforms(&Bsdf::dielectric(&Spectrum::Cauchy { a: 1.5, b_um2: 0.05, c_um4: 0.0 }));
+}
+
+#[test]
+fn conductor() {
+    for (eta, k) in [(0.05, 4.0), (1.5, 0.0), (2.0, 3.0), (0.0, 0.0)] {
+        assert_conforms(&Bsdf::conductor(&constant(eta), &constant(k)));
+    }
+}
+
+/// Oren and Nayar's equation 30 in its own variables, at sigma 0.5 where no scaling takes place.
+#[test]
+fn oren_nayar_is_the_published_function() {
+    let sigma2: f64 = 0.25;
+    let (a, b) = (1.0 - 0.5 * sigma2 / (sigma2 + 0.33), 0.45 * sigma2 / (sigma2 + 0.09));
+    let bsdf = Bsdf::oren_nayar(&constant(0.7), 0.5);
+    for (theta_o, theta_i, dphi) in [(0.2, 0.9, 0.4), (1.3, 0.5, 1.2), (0.8, 0.8, 2.5), (1.4, 1.4, 0.0f64)] {
+        let (theta_o, theta_i): (f64, f64) = (theta_o, theta_i);
+        let wo = DVec3::new(theta_o.sin(), 0.0, theta_o.cos());
+        let wi = DVec3::new(theta_i.sin() * dphi.cos(), theta_i.sin() * dphi.sin(), theta_i.cos());
+        let (alpha, beta) = (theta_o.max(theta_i), theta_o.min(theta_i));
+        let exact = 0.7 / std::f64::consts::PI * (a + b * dphi.cos().max(0.0) * alpha.sin() * beta.tan());
+        let got = f64::from(bsdf.eval(wo, wi, &wavelengths()).hero());
+        assert!((got / exact - 1.0).abs() < 1e-6, "{got} instead of {exact}");
+    }
+}
+
+/// Snell's law and the plane of incidence, both ways.
+#[test]
+fn refraction_obeys_snell() {
+    let bsdf = Bsdf::dielectric(&constant(1.5));
+    for wo in directions() {
+        let Some(sample) = bsdf.sample(wo, [0.5; 2], 1.0, &wavelengths()) else { continue };
+        if sample.wi.z * wo.z > 0.0 {
+            continue; // total reflection
+        }
+        let eta = if wo.z > 0.0 { 1.5 } else { 1.0 / 1.5 };
+        assert!((sample.wi.truncate() * eta + wo.truncate()).length() < 1e-12);
+        assert_eq!(sample.eta, eta);
+    }
+}
