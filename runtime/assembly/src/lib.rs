@@ -10,6 +10,7 @@ mod geometry;
 mod host;
 mod lights;
 mod materials;
+mod measure;
 mod mesh;
 mod ply;
 mod sequence;
@@ -20,6 +21,7 @@ mod tests;
 
 pub use error::AssemblyError;
 pub use host::{Host, HostError, OpenFile};
+pub use measure::{Measurement, measure};
 pub use mesh::{MeshError, MeshReader};
 pub use ply::Ply;
 pub use sequence::{Outcome, RenderReport, actions, run};

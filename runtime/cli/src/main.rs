@@ -5,6 +5,7 @@
 //! there is a bug of arsc, reported by [`bug`].
 
 mod args;
+mod bench;
 mod bug;
 mod check;
 mod compile;
@@ -38,6 +39,7 @@ enum Command {
     Explain(explain::Args),
     Render(render::Args),
     Probe(probe::Args),
+    Bench(bench::Args),
 }
 
 fn main() -> std::process::ExitCode {
@@ -52,5 +54,6 @@ fn run(cli: Cli) -> Exit {
         Command::Explain(args) => explain::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Probe(args) => probe::run(&args),
+        Command::Bench(args) => bench::run(&args),
     }
 }
