@@ -51,6 +51,8 @@ struct Scanner<'t> {
     /// `list<list<…`: how many in a row.
     angles: usize,
     foreign: usize,
+    /// A comment goes on to the end of the text.
+    endless_comment: bool,
     found: Scan,
 }
 
@@ -73,6 +75,7 @@ pub(crate) fn scan(source: SourceId, text: &str) -> Scan {
         nesting: 0,
         angles: 0,
         foreign: 0,
+        endless_comment: false,
         found,
     };
     scanner.run();
@@ -142,6 +145,7 @@ impl Scanner<'_> {
         loop {
             match (self.bytes.get(self.at), self.bytes.get(self.at + 1)) {
                 (None, _) => {
+                    self.endless_comment = true;
                     self.found.diagnostics.push(
                         Diagnostic::new(codes::syntax::UNTERMINATED, "a comment is not closed")
                             .label(self.span(start, start + 2), "starts here")
@@ -190,6 +194,12 @@ impl Scanner<'_> {
                 .label(self.span(self.at, self.at), "and does not end on this line")
                 .help("close it with `\"`; a line break inside of a string is written `\\n`"),
         );
+        // The string has swallowed the closing brackets of this line.
+        let line = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
+        while self.open.last().is_some_and(|open| open.bracket != b'{' && open.at >= line) {
+            let swallowed = self.pop().map(|open| open.at);
+            self.found.masked.extend(swallowed);
+        }
     }
 
     fn word(&mut self) {
@@ -215,7 +225,10 @@ impl Scanner<'_> {
         let next = self.text[self.at..].trim_start_matches([' ', '\t']).bytes().next();
         let declares = next.is_some_and(|b| b.is_ascii_alphabetic() || matches!(b, b'_' | b'{' | b'"' | b'('));
         let in_parentheses = self.open.last().is_some_and(|open| open.bracket != b'{');
-        declares && (ITEM_KEYWORDS.contains(&word) || in_parentheses && STATEMENT_KEYWORDS.contains(&word))
+        // `fn name` declares, `fn (` is a lambda.
+        let declares_fn = word == "fn" && next.is_some_and(|b| b.is_ascii_alphabetic());
+        let is_statement = STATEMENT_KEYWORDS.contains(&word) || declares_fn;
+        declares && (ITEM_KEYWORDS.contains(&word) || in_parentheses && is_statement)
     }
 
     fn nest(&mut self, at: usize) {
@@ -289,8 +302,9 @@ impl Scanner<'_> {
     }
 
     fn close_all(&mut self, at: usize) {
-        // Of many open brackets the innermost is the cause; the others follow from it.
-        if !self.open.is_empty() {
+        // Of many open brackets the innermost is the cause; the others follow from it. A comment without an end has
+        // swallowed the closing ones.
+        if !self.open.is_empty() && !self.endless_comment {
             self.report_unclosed((at < self.bytes.len()).then_some(at));
         }
         self.open.clear();

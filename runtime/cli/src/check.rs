@@ -48,6 +48,42 @@ fn lint(name: &str) -> Result<String, String> {
     }
 }
 
+/// What a script may use. The defaults are generous; exceeding one is a finding.
+#[derive(clap::Args, Clone, Debug)]
+pub struct LimitArgs {
+    /// Steps of evaluation
+    #[arg(long, value_name = "N")]
+    pub max_steps: Option<u64>,
+
+    /// Depth of function calls
+    #[arg(long, value_name = "N")]
+    pub max_recursion: Option<usize>,
+
+    /// Nodes of the scene
+    #[arg(long, value_name = "N")]
+    pub max_nodes: Option<usize>,
+
+    /// Elements of all lists and strings
+    #[arg(long, value_name = "N")]
+    pub max_elements: Option<u64>,
+
+    /// Depth of imports
+    #[arg(long, value_name = "N")]
+    pub max_imports: Option<usize>,
+}
+
+impl LimitArgs {
+    /// Sets those that were given.
+    pub fn apply(&self, options: &mut Options) {
+        let limits = &mut options.limits;
+        limits.steps = self.max_steps.unwrap_or(limits.steps);
+        limits.recursion = self.max_recursion.unwrap_or(limits.recursion);
+        limits.nodes = self.max_nodes.unwrap_or(limits.nodes);
+        limits.elements = self.max_elements.unwrap_or(limits.elements);
+        options.include_depth = self.max_imports.unwrap_or(options.include_depth);
+    }
+}
+
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The scripts, or `-` for standard input
@@ -68,10 +104,14 @@ pub struct Args {
 
     #[command(flatten)]
     lints: LintArgs,
+
+    #[command(flatten)]
+    limits: LimitArgs,
 }
 
 pub fn run(args: &Args) -> Exit {
-    let options = Options { settings: args.set.clone(), lint_levels: args.lints.levels(), ..Options::default() };
+    let mut options = Options { settings: args.set.clone(), lint_levels: args.lints.levels(), ..Options::default() };
+    args.limits.apply(&mut options);
     let mut all = Vec::new();
     let mut could_run = true;
     for scene in &args.scenes {

@@ -82,6 +82,8 @@ pub(crate) struct Builder<'t> {
     diagnostics: Vec<Diagnostic>,
     /// Starts of what the scan has reported, ascending: a statement that holds one needs no second report.
     reported: Vec<u32>,
+    /// Where the last statement ended that another one followed on the same line: that one needs no second report.
+    crowded_at: Option<usize>,
     /// Where the last report of a tree too deep ended.
     too_deep_until: u32,
 }
@@ -90,7 +92,7 @@ impl<'t> Builder<'t> {
     fn new(source: SourceId, text: &'t str, diagnostics: Vec<Diagnostic>) -> Builder<'t> {
         let mut reported: Vec<u32> = diagnostics.iter().filter_map(|d| d.primary_span()).map(|s| s.start).collect();
         reported.sort_unstable();
-        Builder { source, text, base: 0, diagnostics, reported, too_deep_until: 0 }
+        Builder { source, text, base: 0, diagnostics, reported, crowded_at: None, too_deep_until: 0 }
     }
 
     fn finish(mut self) -> Vec<Diagnostic> {
@@ -120,11 +122,16 @@ impl<'t> Builder<'t> {
     /// Reports a statement or item that the grammar could not read, unless the scan has already said why.
     fn unreadable(&mut self, rule: Rule, start: usize, end: usize) {
         let first = self.reported.partition_point(|&at| (at as usize) < start);
-        if self.reported.get(first).is_some_and(|&at| (at as usize) < end) {
+        if self.follows_crowded(start) || self.reported.get(first).is_some_and(|&at| (at as usize) < end) {
             return;
         }
         let diagnostic = diagnose::diagnose(self.source, self.text, rule, start, end);
         self.report(diagnostic);
+    }
+
+    /// Whether what starts here is the second of two statements on one line, which has been reported.
+    fn follows_crowded(&self, start: usize) -> bool {
+        self.crowded_at.is_some_and(|end| end <= start && self.text[end..start].trim().is_empty())
     }
 
     /// A zero-width error production for a comma: reported at the end of what stands before it.

@@ -99,6 +99,11 @@ impl<'t> Builder<'t> {
     pub(super) fn missing_end(&mut self, span: Span) {
         let end = span.end as usize;
         let at = Span::new(self.source, end, end);
+        let is_known = self.follows_crowded(span.start as usize);
+        self.crowded_at = Some(end);
+        if is_known {
+            return;
+        }
         let mut diagnostic =
             Diagnostic::new(codes::syntax::STATEMENT_END, "expected a new line or `;` after this statement")
                 .label(at, "the statement ends here");
