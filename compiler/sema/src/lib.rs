@@ -3,6 +3,15 @@
 //! Two stages: *check* resolves names and types of every module without running anything; *evaluate* runs the
 //! checked program under limits and collects the IR. Pure: text of data files arrives through [`Assets`].
 
+mod actions;
+mod check;
+mod code;
+mod eval;
+mod registry;
+mod suggest;
+mod types;
+mod value;
+
 use std::sync::Arc;
 
 use arsc_diagnostics::{Diagnostic, SourceId};
@@ -54,7 +63,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Limits {
-        Limits { steps: 500_000_000, recursion: 200, nodes: 20_000_000, elements: 100_000_000 }
+        Limits { steps: 100_000_000, recursion: 200, nodes: 4_000_000, elements: 20_000_000 }
     }
 }
 
@@ -83,6 +92,23 @@ pub struct Analysed {
 }
 
 /// Checks and evaluates a program. Dependencies come first in `modules`, the root script last.
-pub fn analyse(_modules: &[Module], _assets: &dyn Assets, _options: &Options) -> Analysed {
-    Analysed { ir: None, diagnostics: Vec::new() }
+///
+/// Several errors are reported per run; evaluation starts only when checking found none. Recurses over the syntax
+/// tree and over nested calls: callers give it a stack of 64 MiB.
+pub fn analyse(modules: &[Module], assets: &dyn Assets, options: &Options) -> Analysed {
+    let Some(root) = modules.last() else { return Analysed { ir: None, diagnostics: Vec::new() } };
+    let check::Checked { program, settings, mut diagnostics } = check::check(modules, &options.params);
+    if diagnostics.iter().any(Diagnostic::is_error) {
+        return Analysed { ir: None, diagnostics };
+    }
+    let mut machine = eval::Machine::new(&program, assets, &options.limits);
+    let mut failures = machine.set_params(&settings);
+    let ir = if failures.is_empty() {
+        machine.build(root.ast.span).map_err(|more| failures.extend(more)).ok()
+    } else {
+        None
+    };
+    diagnostics.append(&mut machine.diagnostics);
+    diagnostics.extend(failures);
+    Analysed { ir, diagnostics }
 }

@@ -1,0 +1,68 @@
+//! From a checked program to the IR.
+
+use arsc_diagnostics::codes::sema as codes;
+use arsc_diagnostics::{Diagnostic, Span};
+use arsc_ir::{ActionAt, Ir, NodeId, NodeKind};
+
+use super::{Eval, Machine};
+use crate::code::Entry;
+use crate::value::Value;
+
+impl Machine<'_> {
+    pub(super) fn collect(&mut self, value: Value) {
+        match value {
+            Value::List(list) => list.iter().for_each(|element| self.collect(element.clone())),
+            other => self.collected.push(other),
+        }
+    }
+
+    /// Runs scene, camera and actions. `Err` holds every failure: the three do not depend on each other.
+    pub fn build(&mut self, fallback: Span) -> Result<Ir, Vec<Diagnostic>> {
+        let program = self.program;
+        let mut failures = Vec::new();
+        let root = self.scene(program.scene.as_ref(), fallback).map_err(|failure| failures.push(*failure)).ok();
+        let camera = match &program.camera {
+            Some(entry) => self.run_entry(entry).map_err(|failure| failures.push(*failure)).ok(),
+            None => None,
+        };
+        let actions = self.actions(program.actions.as_ref()).map_err(|failure| failures.push(*failure)).ok();
+        let (Some(root), Some(actions), true) = (root, actions, failures.is_empty()) else { return Err(failures) };
+        Ok(Ir {
+            nodes: std::mem::take(&mut self.nodes),
+            root,
+            bsdfs: std::mem::take(&mut self.bsdfs),
+            emitters: std::mem::take(&mut self.emitters),
+            materials: Vec::new(),
+            camera: camera.map(|camera| camera.as_camera().as_ref().clone()),
+            actions,
+        })
+    }
+
+    fn scene(&mut self, entry: Option<&Entry>, fallback: Span) -> Eval<NodeId> {
+        let span = entry.map_or(fallback, |entry| entry.span);
+        let parts = self.run_collecting(entry)?;
+        if parts.is_empty() && entry.is_some() {
+            self.diagnostics.push(
+                Diagnostic::new(codes::EMPTY_SCENE, "the scene contains nothing").label(span, "collects no shape"),
+            );
+        }
+        let parts = parts.iter().map(Value::as_node).collect();
+        self.node(NodeKind::Union(parts), span)
+    }
+
+    fn actions(&mut self, entry: Option<&Entry>) -> Eval<Vec<ActionAt>> {
+        let actions: Vec<ActionAt> =
+            self.run_collecting(entry)?.iter().map(|action| action.as_action().as_ref().clone()).collect();
+        if let Some(entry) = entry {
+            crate::actions::check(&actions, entry.span, &mut self.diagnostics)?;
+        }
+        Ok(actions)
+    }
+
+    fn run_collecting(&mut self, entry: Option<&Entry>) -> Eval<Vec<Value>> {
+        if let Some(entry) = entry {
+            self.run_entry(entry)?;
+        }
+        Ok(std::mem::take(&mut self.collected))
+    }
+}

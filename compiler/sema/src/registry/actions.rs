@@ -1,0 +1,100 @@
+//! Actions: what is done with the scene. The stack effect of each stands in [`crate::actions`].
+
+use arsc_ir::{Action, Exposure};
+
+use super::{Builtin, Param};
+use crate::types::Type::{self, Float, Int, Str};
+use crate::value::Value;
+
+pub fn builtins() -> Vec<Builtin> {
+    let mut list = scene_actions();
+    list.extend(image_actions());
+    list.extend(words());
+    list.extend(not_yet());
+    list
+}
+
+fn scene_actions() -> Vec<Builtin> {
+    vec![
+        Builtin::new("path_trace", "Renders by path tracing. Stack: scene → scene image<spectral>.")
+            .param(Param::new("samples", Int, "per pixel").int(128).within(1.0, 4_294_967_295.0))
+            .param(Param::new("max_depth", Int, "longest path, in scattering events").int(16).within(1.0, 65_536.0))
+            .param(Param::new("seed", Int, "of the random numbers").int(0).non_negative())
+            .runs(Type::Action, |_, a, site| {
+                let action = Action::PathTrace {
+                    samples: a[0].as_int() as u32,
+                    max_depth: a[1].as_int() as u32,
+                    seed: a[2].as_int() as u64,
+                };
+                Ok(Value::action(action, site.span))
+            }),
+        Builtin::new("accelerate", "Names how CSG is traced from here on. Stack: scene → scene.")
+            .param(Param::new(
+                "strategy",
+                Type::Strategy,
+                "`local`: cells with simplified trees; `tree`: every tree whole",
+            ))
+            .runs(Type::Action, |_, a, site| {
+                Ok(Value::action(Action::Accelerate { strategy: a[0].as_strategy() }, site.span))
+            }),
+        Builtin::new("bounding_boxes", "Prints the bounds of the scene. Stack: scene → scene.")
+            .runs(Type::Action, |_, _, site| Ok(Value::action(Action::BoundingBoxes, site.span))),
+        Builtin::new("collect_lights", "Prints the light sources. Stack: scene → scene.")
+            .runs(Type::Action, |_, _, site| Ok(Value::action(Action::CollectLights, site.span))),
+    ]
+}
+
+fn image_actions() -> Vec<Builtin> {
+    let path = || Param::new("path", Str, "file name within the output directory");
+    vec![
+        Builtin::new("tone_map", "Maps radiance to display values. Stack: image<spectral> → image<display>.")
+            .param(
+                Param::new("exposure", Type::Exposure, "`auto`, or `ev(stops)`")
+                    .default_value("auto", Value::Exposure(Exposure::Auto)),
+            )
+            .runs(Type::Action, |_, a, site| {
+                Ok(Value::action(Action::ToneMap { exposure: a[0].as_exposure() }, site.span))
+            }),
+        Builtin::new("ev", "Exposure in stops: radiances are multiplied by 2^stops.")
+            .param(Param::new("stops", Float, "may be negative"))
+            .runs(Type::Exposure, |_, a, _| Ok(Value::Exposure(Exposure::Ev(a[0].as_float())))),
+        Builtin::new("write_exr", "Writes a spectral EXR file. Stack: image<spectral> → image<spectral>.")
+            .param(path())
+            .runs(Type::Action, |_, a, site| {
+                Ok(Value::action(Action::WriteExr { path: a[0].as_str().to_string() }, site.span))
+            }),
+        Builtin::new("write_png", "Writes a PNG file. Stack: image<display> → image<display>.")
+            .param(path())
+            .runs(Type::Action, |_, a, site| {
+                Ok(Value::action(Action::WritePng { path: a[0].as_str().to_string() }, site.span))
+            }),
+    ]
+}
+
+fn words() -> Vec<Builtin> {
+    vec![
+        Builtin::new("dup", "Stack: a → a a.").runs(Type::Action, |_, _, s| Ok(Value::action(Action::Dup, s.span))),
+        Builtin::new("swap", "Stack: a b → b a.").runs(Type::Action, |_, _, s| Ok(Value::action(Action::Swap, s.span))),
+        Builtin::new("drop", "Stack: a →.").runs(Type::Action, |_, _, s| Ok(Value::action(Action::Drop, s.span))),
+        Builtin::new("over", "Stack: a b → a b a.")
+            .runs(Type::Action, |_, _, s| Ok(Value::action(Action::Over, s.span))),
+    ]
+}
+
+fn not_yet() -> Vec<Builtin> {
+    let path = || Param::new("path", Str, "file");
+    vec![
+        Builtin::new("visualise_polarisation", "Stack: image<spectral> → image<display>.")
+            .later(Type::Action, "the visualisation of polarisation"),
+        Builtin::new("difference_to", "Stack: image<spectral> → image<spectral>.")
+            .param(path())
+            .later(Type::Action, "the difference to a reference"),
+        Builtin::new("denoise", "Stack: image<spectral> → image<spectral>.").later(Type::Action, "denoising"),
+        Builtin::new("convert_colour", "Stack: image<spectral> → image<display>.")
+            .param(Param::new("space", Str, "name of a colour space"))
+            .later(Type::Action, "colour conversion"),
+        Builtin::new("write_tiff", "Stack: image<display> → image<display>.")
+            .param(path())
+            .later(Type::Action, "TIFF output"),
+    ]
+}

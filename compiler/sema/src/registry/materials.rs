@@ -1,0 +1,183 @@
+//! Attributes: what covers a surface, and attaching it.
+
+use arsc_diagnostics::codes::sema as codes;
+use arsc_ir::{Attributes, Bsdf, CutRule, Emitter, NodeKind, Precedence};
+
+use super::{Builtin, Param};
+use crate::code::Site;
+use crate::eval::{Eval, Machine};
+use crate::types::Class;
+use crate::types::SpectrumKind::{Emission, Extinction, Reflectance, RefractiveIndex};
+use crate::types::Type::{self, Angle, Bool, Float, Solid, Spectrum, Var};
+use crate::value::Value;
+
+const MATERIAL: &str = "std.material";
+
+pub fn builtins() -> Vec<Builtin> {
+    let mut list = attaching();
+    list.extend(bsdfs());
+    list.extend(not_yet());
+    list
+}
+
+fn attaching() -> Vec<Builtin> {
+    let on = |name, doc| {
+        Builtin::new(name, doc)
+            .var(Class::Geometry)
+            .param(Param::new("shape", Var(0), "what it applies to, with all its parts"))
+            .variadic(Param::new("attributes", Type::AnyOf(Class::Attribute), "bsdfs, emitters, or lists of them"))
+    };
+    vec![
+        on("with", "Attaches a bsdf, an emitter or both. Where parts have their own, the innermost wins.")
+            .runs(Var(0), |m, args, site| attach(m, args, Precedence::Inner, site)),
+        on("override", "Attaches from outside: wins over everything that the parts have.")
+            .runs(Var(0), |m, args, site| attach(m, args, Precedence::Outer, site)),
+        Builtin::new("cut_with", "Covers the walls that other solids cut into this one by subtraction.")
+            .param(Param::new("solid", Solid, "solid that will be cut"))
+            .param(Param::new("bsdf", Type::Bsdf, "what covers the walls"))
+            .runs(Solid, |m, args, site| {
+                let Some(bsdf) = args[1].as_attributes().bsdf else { return Ok(args[0].clone()) };
+                let attributes = Attributes { cut: Some(CutRule::Bsdf(bsdf)), ..Attributes::default() };
+                apply(m, &args[0], attributes, Precedence::Inner, site)
+            }),
+        Builtin::new("inherit", "Walls that other solids cut into this one show its own material, not theirs.")
+            .param(Param::new("solid", Solid, "solid that will be cut"))
+            .runs(Solid, |m, args, site| {
+                let attributes = Attributes { cut: Some(CutRule::Inherit), ..Attributes::default() };
+                apply(m, &args[0], attributes, Precedence::Inner, site)
+            }),
+        Builtin::new("emitter", "Lambertian emission from the outer side of a surface.")
+            .param(Param::new("radiance", Spectrum(Emission), "W m^-2 sr^-1 nm^-1"))
+            .param(Param::new("two_sided", Bool, "open surfaces only: both sides emit").bool(false))
+            .runs(Type::Emitter, |m, args, site| {
+                m.lint_emission(&args[0], site, 0);
+                let radiance = args[0].as_spectrum().as_ref().clone();
+                let id = m.emitter(Emitter { radiance, two_sided: args[1].as_bool() });
+                Ok(Value::Attributes(Attributes { emitter: Some(id), ..Attributes::default() }))
+            }),
+    ]
+}
+
+fn attach(m: &mut Machine<'_>, args: &[Value], precedence: Precedence, site: &Site) -> Eval {
+    let mut bundle = Attributes::default();
+    merge(&args[1], &mut bundle, site)?;
+    if bundle == Attributes::default() {
+        return Ok(args[0].clone());
+    }
+    apply(m, &args[0], bundle, precedence, site)
+}
+
+/// Collects nested lists of attributes into one bundle.
+fn merge(value: &Value, bundle: &mut Attributes, site: &Site) -> Eval<()> {
+    if let Value::List(list) = value {
+        return list.iter().try_for_each(|element| merge(element, bundle, site));
+    }
+    let new = value.as_attributes();
+    let twice = |what| {
+        Box::new(
+            site.fail(codes::CONFLICTING_ATTRIBUTES, format!("two {what}s are attached at once"))
+                .help("attach one; `override` replaces what parts already have"),
+        )
+    };
+    if new.bsdf.is_some() && bundle.bsdf.is_some() {
+        return Err(twice("bsdf"));
+    }
+    if new.emitter.is_some() && bundle.emitter.is_some() {
+        return Err(twice("emitter"));
+    }
+    bundle.bsdf = bundle.bsdf.or(new.bsdf);
+    bundle.emitter = bundle.emitter.or(new.emitter);
+    bundle.cut = bundle.cut.or(new.cut);
+    Ok(())
+}
+
+fn apply(m: &mut Machine<'_>, value: &Value, attributes: Attributes, precedence: Precedence, site: &Site) -> Eval {
+    if let Value::List(list) = value {
+        m.spend_elements(list.len(), site.span)?;
+        let covered: Eval<Vec<Value>> = list.iter().map(|x| apply(m, x, attributes, precedence, site)).collect();
+        return covered.map(Value::list);
+    }
+    let kind = NodeKind::Attributes { attributes, precedence, child: value.as_node() };
+    m.node(kind, site.span).map(Value::Node)
+}
+
+fn bsdf(m: &mut Machine<'_>, bsdf: Bsdf) -> Eval {
+    let id = m.bsdf(bsdf);
+    Ok(Value::Attributes(Attributes { bsdf: Some(id), ..Attributes::default() }))
+}
+
+fn bsdfs() -> Vec<Builtin> {
+    let of = |name, doc| Builtin::new(name, doc).module(MATERIAL);
+    let reflectance = || Param::new("reflectance", Spectrum(Reflectance), "share of light that is scattered back");
+    vec![
+        of("lambert", "Ideal diffuse reflection.").param(reflectance()).runs(Type::Bsdf, |m, args, site| {
+            m.lint_reflectance(&args[0], site, 0);
+            bsdf(m, Bsdf::Lambert { reflectance: args[0].as_spectrum().as_ref().clone() })
+        }),
+        of("oren_nayar", "Rough diffuse reflection (Oren and Nayar 1994).")
+            .param(reflectance())
+            .param(
+                Param::new("sigma", Angle, "standard deviation of the facets' slope")
+                    .degrees(17.0)
+                    .degrees_between(-1e-9, 90.0),
+            )
+            .runs(Type::Bsdf, |m, args, site| {
+                m.lint_reflectance(&args[0], site, 0);
+                let reflectance = args[0].as_spectrum().as_ref().clone();
+                bsdf(m, Bsdf::OrenNayar { reflectance, sigma: args[1].as_float().max(0.0) })
+            }),
+        of("mirror", "Ideal mirror, the same at every angle.")
+            .param(reflectance().default_value("1", Value::spectrum(arsc_ir::Spectrum::Constant(1.0))))
+            .runs(Type::Bsdf, |m, args, site| {
+                m.lint_reflectance(&args[0], site, 0);
+                bsdf(m, Bsdf::Mirror { reflectance: args[0].as_spectrum().as_ref().clone() })
+            }),
+        of("dielectric", "Smooth clear glass: this index inside, vacuum outside.")
+            .param(
+                Param::new("ior", Spectrum(RefractiveIndex), "refractive index")
+                    .default_value("1.5", Value::spectrum(arsc_ir::Spectrum::Constant(1.5))),
+            )
+            .runs(Type::Bsdf, |m, args, site| {
+                m.require_positive(&args[0], "a refractive index", site, 0)?;
+                bsdf(m, Bsdf::Dielectric { ior: args[0].as_spectrum().as_ref().clone() })
+            }),
+        of("conductor", "Smooth metal of complex refractive index eta + i k.")
+            .param(Param::new("eta", Spectrum(RefractiveIndex), "real part"))
+            .param(Param::new("k", Spectrum(Extinction), "imaginary part"))
+            .runs(Type::Bsdf, |m, args, site| {
+                m.require_positive(&args[0], "a refractive index", site, 0)?;
+                let (eta, k) = (args[0].as_spectrum().as_ref().clone(), args[1].as_spectrum().as_ref().clone());
+                bsdf(m, Bsdf::Conductor { eta, k })
+            }),
+    ]
+}
+
+fn not_yet() -> Vec<Builtin> {
+    let of = |name, doc| Builtin::new(name, doc).module(MATERIAL);
+    let roughness = || Param::new("roughness", Float, "GGX alpha").float(0.1).within(0.0, 1.0);
+    vec![
+        of("rough_conductor", "Rough metal, GGX microfacets.")
+            .param(Param::new("eta", Spectrum(RefractiveIndex), "real part"))
+            .param(Param::new("k", Spectrum(Extinction), "imaginary part"))
+            .param(roughness())
+            .later(Type::Bsdf, "the rough metal"),
+        of("rough_dielectric", "Rough glass, GGX microfacets.")
+            .param(Param::new("ior", Spectrum(RefractiveIndex), "refractive index"))
+            .param(roughness())
+            .later(Type::Bsdf, "the rough glass"),
+        of("layered", "A clear coat over a base.")
+            .param(Param::new("coat", Type::Bsdf, "on top"))
+            .param(Param::new("base", Type::Bsdf, "below"))
+            .later(Type::Bsdf, "the layered surface"),
+        of("phosphor", "A fluorescent surface.")
+            .param(Param::new("reflectance", Spectrum(Reflectance), "without re-radiation"))
+            .later(Type::Bsdf, "fluorescence"),
+        of("medium", "A homogeneous participating medium inside a solid.")
+            .param(Param::new("sigma_a", Spectrum(Extinction), "absorption, 1/m"))
+            .param(Param::new("sigma_s", Spectrum(Extinction), "scattering, 1/m"))
+            .later(Type::Medium, "the participating medium"),
+        of("image_texture", "A texture from an image file.")
+            .param(Param::new("path", Type::Str, "image file, relative to the script"))
+            .later(Type::Texture, "the texture"),
+    ]
+}

@@ -1,0 +1,201 @@
+//! Closed primitives.
+
+use glam::{DAffine3, DVec3};
+
+use arsc_diagnostics::codes::sema as codes;
+use arsc_ir::Shape;
+
+use super::{Builtin, Param};
+use crate::code::Site;
+use crate::eval::{Eval, Machine};
+use crate::types::Type;
+use crate::types::Type::{Bool, Float, Point, Solid, Str, Vec2, Vec3};
+use crate::value::Value;
+
+fn solid(name: &'static str, doc: &'static str) -> Builtin {
+    Builtin::new(name, doc)
+}
+
+pub fn builtins() -> Vec<Builtin> {
+    let mut list = round();
+    list.extend(flat());
+    list.extend(not_yet());
+    list
+}
+
+fn round() -> Vec<Builtin> {
+    let center = || Param::new("center", Point, "centre").vec3([0.0; 3]);
+    vec![
+        solid("sphere", "A ball.")
+            .param(Param::new("radius", Float, "radius").float(1.0).positive())
+            .param(center())
+            .runs(Solid, |m, args, site| {
+                let map = DAffine3::from_translation(args[1].as_vec3());
+                m.solid(Shape::Sphere { radius: args[0].as_float() }, map, site)
+            }),
+        solid("ellipsoid", "An ellipsoid with its axes along x, y and z.")
+            .param(Param::new("radii", Vec3, "half axes").positive())
+            .param(center())
+            .runs(Solid, |m, args, site| {
+                let map = DAffine3::from_scale(args[0].as_vec3());
+                let map = DAffine3::from_translation(args[1].as_vec3()) * map;
+                m.solid(Shape::Sphere { radius: 1.0 }, map, site)
+            }),
+        solid(
+            "cylinder",
+            "A cylinder about the z axis, from z = 0 to z = `height`; a truncated cone if `top_radius` is given.",
+        )
+        .param(Param::new("radius", Float, "radius").float(1.0).positive())
+        .param(Param::new("height", Float, "height").float(1.0).positive())
+        .param(Param::new("top_radius", Float, "radius at the top, if it differs").optional().non_negative())
+        .runs(Solid, |m, args, site| {
+            let (radius, height) = (args[0].as_float(), args[1].as_float());
+            let shape = match args[2] {
+                Value::Missing => Shape::Cylinder { radius, height },
+                ref top => frustum(radius, top.as_float(), height),
+            };
+            m.solid(shape, DAffine3::IDENTITY, site)
+        }),
+        solid("infinite_cylinder", "A cylinder about the z axis without ends. Unbounded: intersect it with something.")
+            .param(Param::new("radius", Float, "radius").float(1.0).positive())
+            .runs(Solid, |m, args, site| {
+                m.solid(Shape::InfiniteCylinder { radius: args[0].as_float() }, DAffine3::IDENTITY, site)
+            }),
+        solid("cone", "A cone about the z axis, from z = 0 to z = `height`; truncated if `top_radius` is not 0.")
+            .param(Param::new("radius", Float, "radius at the base").float(1.0).non_negative())
+            .param(Param::new("height", Float, "height").float(1.0).positive())
+            .param(Param::new("top_radius", Float, "radius at the top").float(0.0).non_negative())
+            .runs(Solid, cone),
+        solid(
+            "torus",
+            "A torus about the z axis: ring, horn (`minor` = `major`) or spindle (`minor` > `major`, filled).",
+        )
+        .param(Param::new("major", Float, "radius of the centre circle").float(1.0).positive())
+        .param(Param::new("minor", Float, "radius of the tube").float(0.25).positive())
+        .runs(Solid, |m, args, site| {
+            let shape = Shape::Torus { major: args[0].as_float(), minor: args[1].as_float() };
+            m.solid(shape, DAffine3::IDENTITY, site)
+        }),
+    ]
+}
+
+fn frustum(base_radius: f64, top_radius: f64, height: f64) -> Shape {
+    if base_radius == top_radius {
+        return Shape::Cylinder { radius: base_radius, height };
+    }
+    Shape::Cone { base_radius, top_radius, height }
+}
+
+fn cone(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
+    let (base, height, top) = (args[0].as_float(), args[1].as_float(), args[2].as_float());
+    if base == 0.0 && top == 0.0 {
+        return Err(site.fail_arg(
+            0,
+            codes::OUT_OF_RANGE,
+            "a cone needs one radius greater than 0",
+            "this is 0, and so is `top_radius`",
+        ));
+    }
+    m.solid(frustum(base, top, height), DAffine3::IDENTITY, site)
+}
+
+fn flat() -> Vec<Builtin> {
+    vec![
+        solid("box", "A box with faces parallel to the axes: by `size`, or by two opposite corners `min` and `max`.")
+            .param(Param::new("size", Vec3, "edge lengths; (1, 1, 1) if no corner is given").optional().positive())
+            .param(Param::new("center", Bool, "centred at the origin; else the smallest corner is there").bool(true))
+            .param(Param::new("min", Point, "smallest corner").optional())
+            .param(Param::new("max", Point, "largest corner").optional())
+            .runs(Solid, block),
+        solid("cube", "A cube with faces parallel to the axes.")
+            .param(Param::new("size", Float, "edge length").float(1.0).positive())
+            .param(Param::new("center", Bool, "centred at the origin; else the smallest corner is there").bool(true))
+            .runs(Solid, |m, args, site| sized_box(m, DVec3::splat(args[0].as_float()), args[1].as_bool(), site)),
+        solid("half_space", "All points p with dot(p, `normal`) <= `offset`: the normal points out. Unbounded.")
+            .param(Param::new("normal", Vec3, "out of the solid; any length but 0").vec3([0.0, 0.0, 1.0]))
+            .param(Param::new("offset", Float, "distance of the plane from the origin along the normal").float(0.0))
+            .runs(Solid, |m, args, site| {
+                let Some(normal) = args[0].as_vec3().try_normalize() else {
+                    return Err(site.fail_arg(
+                        0,
+                        codes::OUT_OF_RANGE,
+                        "a normal needs a length",
+                        "this is the zero vector",
+                    ));
+                };
+                let rotation = glam::DQuat::from_rotation_arc(DVec3::Z, normal);
+                let map = DAffine3::from_rotation_translation(rotation, normal * args[1].as_float());
+                m.solid(Shape::HalfSpace, map, site)
+            }),
+    ]
+}
+
+fn sized_box(m: &mut Machine<'_>, size: DVec3, center: bool, site: &Site) -> Eval {
+    let min = if center { -0.5 * size } else { DVec3::ZERO };
+    m.solid(Shape::Box { min, max: min + size }, DAffine3::IDENTITY, site)
+}
+
+fn block(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
+    match (&args[0], &args[2], &args[3]) {
+        (size, Value::Missing, Value::Missing) => {
+            let size = if size.is_given() { size.as_vec3() } else { DVec3::ONE };
+            sized_box(m, size, args[1].as_bool(), site)
+        }
+        (Value::Missing, min, max) if min.is_given() && max.is_given() => {
+            let (min, max) = (min.as_vec3(), max.as_vec3());
+            if !min.cmplt(max).all() {
+                return Err(site
+                    .fail_arg(
+                        3,
+                        codes::OUT_OF_RANGE,
+                        "`max` of a box must exceed `min` in every axis",
+                        "the larger corner",
+                    )
+                    .into());
+            }
+            m.solid(Shape::Box { min, max }, DAffine3::IDENTITY, site)
+        }
+        _ => Err(site
+            .fail(codes::WRONG_ARGUMENTS, "a box takes either `size` or both `min` and `max`")
+            .help("write `box(size: (1, 2, 3))` or `box(min: (0, 0, 0), max: (1, 2, 3))`")
+            .into()),
+    }
+}
+
+fn not_yet() -> Vec<Builtin> {
+    let size = |name, doc| Param::new(name, Float, doc).positive();
+    vec![
+        solid("paraboloid", "A paraboloid of revolution about the z axis, closed by a disk at z = `height`.")
+            .param(size("radius", "radius at the top").float(1.0))
+            .param(size("height", "height").float(1.0))
+            .later(Solid, "the paraboloid"),
+        solid("hyperboloid", "A hyperboloid of revolution about the z axis, of one or two sheets.")
+            .param(size("radius", "radius of the waist").float(1.0))
+            .param(size("height", "height").float(1.0))
+            .param(size("slope", "slope of the asymptotes").float(1.0))
+            .param(Param::new("sheets", Type::Int, "1 or 2").int(1).within(1.0, 2.0))
+            .later(Solid, "the hyperboloid"),
+        solid("superquadric", "A superellipsoid.")
+            .param(Param::new("radii", Vec3, "half axes").vec3([1.0; 3]).positive())
+            .param(size("e1", "exponent from pole to pole").float(1.0))
+            .param(size("e2", "exponent around the z axis").float(1.0))
+            .later(Solid, "the superquadric"),
+        solid("prism", "A polygon in the plane z = 0, extruded to z = `height`.")
+            .param(Param::new("polygon", Type::list(Vec2), "corners, counter-clockwise"))
+            .param(size("height", "height").float(1.0))
+            .later(Solid, "the prism"),
+        solid("lathe", "A profile (radius, z), turned about the z axis.")
+            .param(Param::new("profile", Type::list(Vec2), "points (radius, z)"))
+            .later(Solid, "the solid of revolution"),
+        solid("polyhedron", "The convex hull of points.")
+            .param(Param::new("points", Type::list(Point), "points"))
+            .later(Solid, "the convex polyhedron"),
+        solid("mesh_solid", "A closed triangle mesh from a file.")
+            .param(Param::new("path", Str, "PLY, OBJ or STL file, relative to the script"))
+            .later(Solid, "the closed mesh"),
+        solid("height_field", "A solid between z = 0 and a height given by an image.")
+            .param(Param::new("path", Str, "image file, relative to the script"))
+            .param(Param::new("size", Vec3, "extent").vec3([1.0; 3]).positive())
+            .later(Solid, "the height field"),
+    ]
+}
