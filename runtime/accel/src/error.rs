@@ -15,6 +15,6 @@ pub enum AccelError {
     Instance { instance: u32 },
     #[error("the scene has more parts than can be numbered")]
     TooManyParts,
-    #[error("the ray tracing kernel failed: {0}")]
-    Kernel(String),
+    #[error(transparent)]
+    Embree(#[from] arsc_embree::EmbreeError),
 }

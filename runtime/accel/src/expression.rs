@@ -62,6 +62,14 @@ impl Token {
         Token(length as u32 | if op == Op::And { 2 << 30 } else { 3 << 30 })
     }
 
+    /// The same token with the leaf of a literal renumbered.
+    pub fn renumbered(self, number: impl Fn(u32) -> u32) -> Token {
+        match self.word() {
+            Word::Literal { leaf, negated } => Token::literal(number(leaf), negated),
+            Word::Node { .. } => self,
+        }
+    }
+
     pub fn word(self) -> Word {
         let payload = self.0 & PAYLOAD;
         match self.0 >> 30 {

@@ -4,17 +4,21 @@
 //! [`Scene`] that answers: the nearest hit, occlusion, and all intervals along a ray. Positions and distances
 //! are double precision and carry error bounds; there is no fixed epsilon. Materials are opaque numbers here.
 
+mod cells;
 mod coincidence;
 mod error;
 mod expression;
 mod frame;
 mod geometry;
 mod hit;
+mod level;
 mod nearest;
+mod query;
 mod scene;
 mod solid;
 mod surfaces;
 mod tree;
+mod world;
 
 use expression::Expression;
 

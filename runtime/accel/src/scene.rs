@@ -1,18 +1,31 @@
 //! The built scene: what rays, lights and probes ask.
 
+use std::cell::Cell;
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
 
+use arsc_embree::Scene as EmbreeScene;
 use arsc_geometry::{Aabb, Placed, Ray, SurfacePoint};
 
 use crate::frame::Frame;
-use crate::nearest::{Candidate, Nearest, Target};
-use crate::solid::{SolidModel, SolidRay};
+use crate::level::{Level, Prototype};
+use crate::nearest::{Candidate, Target};
+use crate::query::{Mode, Query, Scratch};
+use crate::solid::SolidModel;
 use crate::surfaces::SurfaceModel;
 use crate::tree::{Transition, transitions};
-use crate::{AccelError, AreaSample, Hit, Interval, MaterialIndex, PartId, SceneGeometry, Strategy};
+use crate::world::{InstanceModel, World, device};
+use crate::{AccelError, AreaSample, Hit, Interval, MaterialIndex, PartId, SceneGeometry, Solid, Strategy};
+
+/// Parts are numbered in 32 bits, with room for what is added to them.
+const MOST_PARTS: usize = (u32::MAX / 2) as usize;
+
+thread_local! {
+    static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
+}
 
 /// How to build.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,7 +71,6 @@ pub enum PartKind {
 struct Member {
     model: Arc<SolidModel>,
     frame: Option<Frame>,
-    first_part: u32,
 }
 
 /// Geometry, ready to be traced from any number of threads.
@@ -66,82 +78,43 @@ struct Member {
 /// Rays must have a unit direction; one that is not finite meets nothing.
 pub struct Scene {
     members: Vec<Member>,
-    surfaces: Vec<SurfaceModel>,
-    first_surface_part: u32,
     parts: Vec<Part>,
     bounds: Aabb,
     stats: BuildStats,
+    world: EmbreeScene<World>,
 }
 
 impl Scene {
     pub fn build(geometry: SceneGeometry, options: BuildOptions) -> Result<Scene, AccelError> {
         let start = Instant::now();
-        let _ = options;
-        let mut scene = Scene {
-            members: vec![],
-            surfaces: vec![],
-            first_surface_part: 0,
-            parts: vec![],
-            bounds: Aabb::EMPTY,
-            stats: BuildStats::default(),
-        };
+        let mut plan = Plan::default();
         for (i, solid) in (0..).zip(&geometry.solids) {
-            scene.add_member(Arc::new(SolidModel::new(solid, i)?), None)?;
+            plan.add_member(Arc::new(SolidModel::new(solid, i)?), None)?;
         }
-        scene.first_surface_part = scene.parts.len() as u32;
+        let solids = plan.members.iter().map(|member| member.model.clone()).collect();
+        let first_surface_part = plan.parts.len() as u32;
+        let mut surfaces = Vec::with_capacity(geometry.surfaces.len());
         for (i, surface) in (0..).zip(&geometry.surfaces) {
             let model = SurfaceModel::new(surface, i)?;
-            scene.bounds = scene.bounds.union(&model.bounds());
-            scene.parts.push(Part { material: surface.material, kind: PartKind::Surface { surface: i } });
-            scene.surfaces.push(model);
+            plan.bounds = plan.bounds.union(&model.bounds());
+            plan.parts.push(Part { material: surface.material, kind: PartKind::Surface { surface: i } });
+            surfaces.push(model);
         }
-        scene.add_instances(&geometry)?;
-        scene.stats = BuildStats {
+        let before = device()?.bytes();
+        let (instances, shared_cells, shared_bytes) = plan.add_instances(&geometry, options.strategy)?;
+        let level = Level::new(solids, options.strategy);
+        let (cells, own_bytes) = (level.primitive_count() + shared_cells, level.bytes() + shared_bytes);
+        let world = World::build(level, surfaces, first_surface_part, instances)?;
+        let stats = BuildStats {
             solids: geometry.solids.len(),
             instances: geometry.instances.len(),
             surfaces: geometry.surfaces.len(),
-            primitives: scene.parts.len(),
-            cells: scene.members.len(),
-            bytes: 0,
+            primitives: plan.parts.len(),
+            cells,
+            bytes: own_bytes + device()?.bytes().saturating_sub(before),
             build_time: start.elapsed(),
         };
-        Ok(scene)
-    }
-
-    fn add_instances(&mut self, geometry: &SceneGeometry) -> Result<(), AccelError> {
-        let first = geometry.solids.len() as u32;
-        let mut shared: Vec<(*const crate::Solid, Arc<SolidModel>)> = Vec::new();
-        for (i, instance) in (0..).zip(&geometry.instances) {
-            let frame = Frame::new(instance.world_from_object).ok_or(AccelError::Instance { instance: i })?;
-            let pointer = Arc::as_ptr(&instance.solid);
-            let known = shared.iter().find(|(p, _)| *p == pointer).map(|(_, model)| model.clone());
-            let model = match known {
-                Some(model) => model,
-                None => {
-                    let model = Arc::new(SolidModel::new(&instance.solid, first + i)?);
-                    shared.push((pointer, model.clone()));
-                    model
-                }
-            };
-            self.add_member(model, Some(frame))?;
-        }
-        Ok(())
-    }
-
-    fn add_member(&mut self, model: Arc<SolidModel>, frame: Option<Frame>) -> Result<(), AccelError> {
-        let solid = self.members.len() as u32;
-        let first_part = self.parts.len() as u32;
-        if self.parts.len() + model.leaves.len() > u32::MAX as usize / 2 {
-            return Err(AccelError::TooManyParts);
-        }
-        for (leaf, &material) in (0..).zip(&model.materials) {
-            self.parts.push(Part { material, kind: PartKind::Leaf { solid, leaf } });
-        }
-        let local = model.bounds;
-        let world = frame.as_ref().map_or(local, |frame| local.transformed(&frame.world_from_object));
-        self.bounds = self.bounds.union(&world);
-        self.members.push(Member { model, frame, first_part });
-        Ok(())
+        Ok(Scene { members: plan.members, parts: plan.parts, bounds: plan.bounds, stats, world })
     }
 
     /// Holds everything; infinite where an unbounded solid or plane is.
@@ -166,7 +139,7 @@ impl Scene {
     /// World area of a part's whole surface; infinite when it is unbounded.
     pub fn part_area(&self, part: PartId) -> f64 {
         match self.parts[part.0 as usize].kind {
-            PartKind::Surface { surface } => self.surfaces[surface as usize].area(),
+            PartKind::Surface { surface } => self.surfaces()[surface as usize].area(),
             PartKind::Leaf { solid, leaf } => self.placed_leaf(solid, leaf).map_or(f64::INFINITY, |p| p.area()),
         }
     }
@@ -183,54 +156,71 @@ impl Scene {
 
     /// The nearest surface point with `0 < t < t_max`.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        if !is_traceable(ray) {
-            return None;
-        }
-        let mut nearest = Nearest::new(ray.t_max);
-        for (solid, member) in (0..).zip(&self.members) {
-            offer_solid(solid, member, ray, &mut nearest);
-        }
-        for (surface, model) in (0..).zip(&self.surfaces) {
-            offer_surface(surface, self.first_surface_part + surface, model, ray, &mut nearest);
-        }
-        let best = nearest.best?;
-        Some(self.complete(&best, nearest.tie, ray))
+        let query = self.trace(Mode::Nearest, ray, None)?;
+        let hit = query.nearest.best.map(|best| self.complete(&best, query.nearest.tie, ray));
+        recycle(query);
+        hit
     }
 
     /// Whether anything is met with `0 < t < t_max`.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.intersect(ray).is_some()
+        let Some(query) = self.trace(Mode::Occluded, ray, None) else { return false };
+        let blocked = query.blocked;
+        recycle(query);
+        blocked
+    }
+
+    /// Primitives (cells, whole solids, surfaces) that [`Scene::intersect`] tests for this ray.
+    pub fn count_tests(&self, ray: &Ray) -> u32 {
+        let Some(query) = self.trace(Mode::Nearest, ray, None) else { return 0 };
+        let tests = query.tests;
+        recycle(query);
+        tests
     }
 
     /// All stretches of the ray inside solids, sorted by solid, then by `t`.
     pub fn intervals(&self, ray: &Ray) -> Vec<Interval> {
         let mut found = Vec::new();
-        if is_traceable(ray) {
-            for (solid, member) in (0..).zip(&self.members) {
-                self.solid_intervals(solid, member, ray, &mut found);
+        // To infinity, so that a bounded solid is known to be left again.
+        let Some(mut query) = self.trace(Mode::Collect, &Ray { t_max: f64::INFINITY, ..*ray }, None) else {
+            return found;
+        };
+        let solid_of = |candidate: &Candidate| match candidate.target {
+            Target::Solid { solid, .. } => solid,
+            _ => u32::MAX,
+        };
+        query
+            .scratch
+            .collected
+            .sort_unstable_by(|a, b| solid_of(a).cmp(&solid_of(b)).then(a.t.total_cmp(&b.t)).then(a.part.cmp(&b.part)));
+        let mut rest = &query.scratch.collected[..];
+        for (solid, member) in (0..).zip(&self.members) {
+            let (own, others) = rest.split_at(rest.partition_point(|candidate| solid_of(candidate) <= solid));
+            if !own.is_empty() || !member.model.bounds.is_finite() {
+                self.solid_intervals(solid, own, ray, &mut found);
             }
+            rest = others;
         }
+        recycle(query);
         found
     }
 
-    fn solid_intervals(&self, solid: u32, member: &Member, ray: &Ray, found: &mut Vec<Interval>) {
-        let (view, scale) = member.view(ray);
-        let mut crossed = Vec::new();
-        let start = transitions(&member.model, &view, |transition| {
-            let t = (transition.t - view.start) / scale;
-            if t < ray.t_max {
-                crossed.push(Candidate {
-                    t,
-                    part: member.first_part + transition.leaf,
-                    tolerance: member.model.tolerance / scale,
-                    target: Target::Solid { solid, transition },
-                });
+    /// Pairs the transitions of one solid. Overlapping cells report some of them twice: entries and exits alternate, so
+    /// one that repeats the kind of the one before is the same.
+    fn solid_intervals(&self, solid: u32, transitions: &[Candidate], ray: &Ray, found: &mut Vec<Interval>) {
+        let enters = |candidate: &Candidate| {
+            matches!(candidate.target, Target::Solid { transition: Transition { entering: true, .. }, .. })
+        };
+        let starts_inside = match transitions.first() {
+            Some(first) => !enters(first),
+            None => self.members[solid as usize].contains_start(ray),
+        };
+        let mut open = starts_inside.then_some((0.0, None));
+        for candidate in transitions.iter().take_while(|candidate| candidate.t < ray.t_max) {
+            if enters(candidate) == open.is_some() {
+                continue;
             }
-            t < ray.t_max
-        });
-        let mut open = start.then_some((0.0, None));
-        for candidate in crossed {
-            let hit = self.complete(&candidate, 0.0, ray);
+            let hit = self.complete(candidate, 0.0, ray);
             match open.take() {
                 None => open = Some((candidate.t, Some(hit))),
                 Some((t_enter, enter)) => {
@@ -243,13 +233,25 @@ impl Scene {
         }
     }
 
+    /// `None` for rays that cannot be traced. The query goes to [`recycle`] afterwards.
+    fn trace(&self, mode: Mode, ray: &Ray, only: Option<u32>) -> Option<Query> {
+        if !is_traceable(ray) {
+            return None;
+        }
+        let scratch = SCRATCH.take().unwrap_or_default();
+        let mut query = Query::new(mode, ray, scratch);
+        query.only = only;
+        World::trace(&self.world, &mut query);
+        Some(query)
+    }
+
     /// A point uniform over the part's object space area, if it is on the boundary of the part's solid and its own there;
     /// its density is over the whole part, so that leaving out the others is unbiased. `choice` and `u` in [0, 1)
     /// are independent; `choice` picks the triangle of a mesh. `None` for unbounded parts too.
     pub fn sample_part(&self, part: PartId, choice: f64, u: [f64; 2]) -> Option<AreaSample> {
         match self.parts[part.0 as usize].kind {
             PartKind::Surface { surface } => {
-                let model = &self.surfaces[surface as usize];
+                let model = &self.surfaces()[surface as usize];
                 let point = model.sample(choice, u)?;
                 Some(area_sample(&point, point.n, 1.0 / model.area()))
             }
@@ -270,8 +272,9 @@ impl Scene {
             member.frame.as_ref().map_or(1.0, |frame| frame.world_from_object.matrix3.determinant().abs().cbrt());
         let reach = 4.0 * (member.model.tolerance * stretch).max(4.0 * point.p_error);
         let ray = Ray { origin: point.p + point.n * reach, dir: -point.n, t_max: 2.0 * reach };
-        let mut nearest = Nearest::new(ray.t_max);
-        offer_solid(solid, member, &ray, &mut nearest);
+        let query = self.trace(Mode::Nearest, &ray, Some(solid))?;
+        let nearest = query.nearest;
+        recycle(query);
         let best = nearest.best.filter(|best| best.part == part.0)?;
         Some(self.complete(&best, nearest.tie, &ray))
     }
@@ -280,12 +283,16 @@ impl Scene {
     /// unbounded parts.
     pub fn pdf_area(&self, hit: &Hit) -> f64 {
         match self.parts[hit.part.0 as usize].kind {
-            PartKind::Surface { surface } => 1.0 / self.surfaces[surface as usize].area(),
+            PartKind::Surface { surface } => 1.0 / self.surfaces()[surface as usize].area(),
             PartKind::Leaf { solid, leaf } => match &self.members[solid as usize].frame {
                 None => self.members[solid as usize].model.leaves[leaf as usize].pdf_area(hit.ng),
                 Some(_) => self.placed_leaf(solid, leaf).map_or(0.0, |placed| placed.pdf_area(hit.ng)),
             },
         }
+    }
+
+    fn surfaces(&self) -> &[SurfaceModel] {
+        &self.world.callbacks().surfaces
     }
 
     /// The frame at a candidate.
@@ -298,12 +305,12 @@ impl Scene {
                 (point, point.n, u32::from(transition.face), transition.flipped, true)
             }
             Target::Flat { surface } => {
-                let SurfaceModel::Flat(flat) = &self.surfaces[surface as usize] else { unreachable!() };
+                let SurfaceModel::Flat(flat) = &self.surfaces()[surface as usize] else { unreachable!() };
                 let point = flat.surface(p);
                 (point, point.n, 0, false, false)
             }
             Target::Triangle { surface, triangle, weights } => {
-                let SurfaceModel::Triangles(mesh) = &self.surfaces[surface as usize] else { unreachable!() };
+                let SurfaceModel::Triangles(mesh) = &self.surfaces()[surface as usize] else { unreachable!() };
                 let (point, ns) = mesh.surface(triangle as usize, weights);
                 (point, ns, triangle, false, false)
             }
@@ -325,17 +332,68 @@ impl Scene {
     }
 }
 
-impl Member {
-    /// The ray in the solid's frame, and how much longer its unit of `t` is there.
-    fn view(&self, ray: &Ray) -> (SolidRay, f64) {
-        match &self.frame {
-            None => (self.model.near_ray(ray.origin, ray.dir, ray.t_max), 1.0),
-            Some(frame) => {
-                let local = ray.transformed(&frame.object_from_world);
-                let scale = local.dir.length();
-                (self.model.near_ray(local.origin, local.dir / scale, local.t_max * scale), scale)
-            }
+/// Parts and solids as they are numbered.
+#[derive(Default)]
+struct Plan {
+    members: Vec<Member>,
+    parts: Vec<Part>,
+    bounds: Aabb,
+}
+
+impl Plan {
+    fn add_member(&mut self, model: Arc<SolidModel>, frame: Option<Frame>) -> Result<(), AccelError> {
+        let solid = self.members.len() as u32;
+        if self.parts.len() + model.leaves.len() > MOST_PARTS {
+            return Err(AccelError::TooManyParts);
         }
+        for (leaf, &material) in (0..).zip(&model.materials) {
+            self.parts.push(Part { material, kind: PartKind::Leaf { solid, leaf } });
+        }
+        let map = frame.as_ref().map(|frame| frame.world_from_object);
+        let world = map.map_or(model.bounds, |map| model.bounds.transformed(&map));
+        self.bounds = self.bounds.union(&world);
+        self.members.push(Member { model, frame });
+        Ok(())
+    }
+
+    /// The instances, and cells and bytes of what they share.
+    fn add_instances(
+        &mut self,
+        geometry: &SceneGeometry,
+        strategy: Strategy,
+    ) -> Result<(Vec<InstanceModel>, usize, usize), AccelError> {
+        let mut shared: HashMap<*const Solid, Arc<EmbreeScene<Prototype>>> = HashMap::new();
+        let mut instances = Vec::with_capacity(geometry.instances.len());
+        let (mut cells, mut bytes) = (0, 0);
+        for (i, instance) in (0..).zip(&geometry.instances) {
+            let frame = Frame::new(instance.world_from_object).ok_or(AccelError::Instance { instance: i })?;
+            let (solid, first_part) = (self.members.len() as u32, self.parts.len() as u32);
+            let prototype = match shared.get(&Arc::as_ptr(&instance.solid)) {
+                Some(prototype) => prototype.clone(),
+                None => {
+                    let model = Arc::new(SolidModel::new(&instance.solid, solid)?);
+                    let prototype = Arc::new(Prototype::build(device()?, model, strategy)?);
+                    let level = &prototype.callbacks().level;
+                    cells += level.primitive_count();
+                    bytes += level.bytes();
+                    shared.insert(Arc::as_ptr(&instance.solid), prototype.clone());
+                    prototype
+                }
+            };
+            self.add_member(prototype.callbacks().level.solids[0].clone(), Some(frame.clone()))?;
+            instances.push(InstanceModel { prototype, frame, solid, first_part });
+        }
+        Ok((instances, cells, bytes))
+    }
+}
+
+impl Member {
+    /// The ray's origin is in the solid.
+    fn contains_start(&self, ray: &Ray) -> bool {
+        let map = self.frame.as_ref().map(|frame| frame.object_from_world);
+        let local = map.map_or(*ray, |map| ray.transformed(&map));
+        let near = self.model.near_ray(local.origin, local.dir.normalize(), f64::INFINITY);
+        transitions(&self.model, &near, |_| false)
     }
 
     /// The surface point of a transition at `p`, in the world.
@@ -360,38 +418,7 @@ fn area_sample(point: &SurfacePoint, ng: DVec3, pdf_area: f64) -> AreaSample {
     AreaSample { p: point.p, p_error: point.p_error, ng, uv: point.uv, pdf_area }
 }
 
-fn offer_solid(solid: u32, member: &Member, ray: &Ray, nearest: &mut Nearest) {
-    let (view, scale) = member.view(ray);
-    transitions(&member.model, &view, |transition| {
-        nearest.offer(Candidate {
-            t: (transition.t - view.start) / scale,
-            part: member.first_part + transition.leaf,
-            tolerance: member.model.tolerance / scale,
-            target: Target::Solid { solid, transition },
-        });
-        false
-    });
-}
-
-fn offer_surface(surface: u32, part: u32, model: &SurfaceModel, ray: &Ray, nearest: &mut Nearest) {
-    match model {
-        SurfaceModel::Flat(flat) => {
-            if let Some(t) = flat.crossing(ray.origin, ray.dir) {
-                let tolerance = flat.tolerance(ray.at(t), ray.dir);
-                nearest.offer(Candidate { t, part, tolerance, target: Target::Flat { surface } });
-            }
-        }
-        SurfaceModel::Triangles(mesh) => {
-            for triangle in 0..mesh.triangles.len() {
-                if let Some((t, weights)) = mesh.crossing(triangle, ray.origin, ray.dir)
-                    && weights.min_element() >= 0.0
-                    && weights.x + weights.y <= 1.0
-                {
-                    let target = Target::Triangle { surface, triangle: triangle as u32, weights };
-                    let tolerance = mesh.tolerance(triangle, ray.dir);
-                    nearest.offer(Candidate { t, part, tolerance, target });
-                }
-            }
-        }
-    }
+/// Gives the query's buffers to the next ray of this thread.
+fn recycle(query: Query) {
+    SCRATCH.set(Some(query.scratch));
 }

@@ -13,6 +13,9 @@ const ROUNDINGS: f64 = 32.0;
 /// Surfaces closer than so many error bounds coincide.
 const COINCIDENT: f64 = 4.0;
 
+/// The two halves of a quad, as Embree cuts it.
+const QUAD: [[u32; 3]; 2] = [[0, 1, 3], [2, 3, 1]];
+
 /// A surface, checked and placed.
 #[derive(Clone, Debug)]
 pub enum SurfaceModel {
@@ -43,8 +46,7 @@ impl SurfaceModel {
             }
             SurfaceShape::Quad(corners) => {
                 let uvs = vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
-                Triangles::place(corners.to_vec(), vec![[0, 1, 3], [2, 3, 1]], uvs, vec![], &map, &inverse)
-                    .map_err(fail)
+                Triangles::place(corners.to_vec(), QUAD.to_vec(), uvs, vec![], &map, &inverse).map_err(fail)
             }
             SurfaceShape::Mesh(mesh) => from_mesh(mesh, &map, &inverse).map_err(fail),
         }
@@ -200,6 +202,8 @@ pub struct Triangles {
     bounds: Aabb,
     magnitude: f64,
     mirrored: bool,
+    /// Four corners, two triangles.
+    pub is_quad: bool,
 }
 
 fn from_mesh(mesh: &TriangleMesh, map: &DAffine3, inverse: &DAffine3) -> Result<SurfaceModel, &'static str> {
@@ -240,8 +244,10 @@ impl Triangles {
         let bounds = positions.iter().fold(Aabb::EMPTY, hull);
         let magnitude = if count == 0 { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
         let mirrored = map.matrix3.determinant() < 0.0;
+        let is_quad = triangles == QUAD;
+        let cumulative_area = vec![];
         let mut model =
-            Triangles { positions, triangles, uvs, normals, cumulative_area: vec![], bounds, magnitude, mirrored };
+            Triangles { positions, triangles, uvs, normals, cumulative_area, bounds, magnitude, mirrored, is_quad };
         let mut sum = 0.0;
         for i in 0..model.triangles.len() {
             sum += 0.5 * model.cross(i).length();

@@ -9,6 +9,13 @@ pub struct Aabb {
     pub max: DVec3,
 }
 
+impl Default for Aabb {
+    /// The empty box.
+    fn default() -> Aabb {
+        Aabb::EMPTY
+    }
+}
+
 impl Aabb {
     pub const EMPTY: Aabb = Aabb { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
     pub const EVERYTHING: Aabb = Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };

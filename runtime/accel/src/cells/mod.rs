@@ -1,0 +1,90 @@
+//! Spatially localised CSG (docs/csg.md): the solid's box cut into cells, each with the expression that is left of the
+//! tree there.
+//!
+//! Invariants. Every boundary point of the solid lies in the box of some cell. Within `PAD` tolerances of a cell's box
+//! the cell's expression has the value of the whole tree and the same owners of coincident faces. Cells are traced over
+//! their box dilated by one tolerance, so neighbours overlap and a cluster of coincident crossings is never cut in both.
+
+mod build;
+mod dominance;
+mod query;
+mod split;
+mod truth_table;
+
+use arsc_geometry::Aabb;
+
+use crate::expression::Token;
+
+pub use build::{append_outer, append_solid, core};
+pub use query::{Leaves, Window, transitions};
+
+/// Expressions of at most so many leaves are kept as truth tables.
+pub const TABLE_LEAVES: usize = 6;
+/// The margin around a cell in which its expression holds, in tolerances of the solid.
+const PAD: f64 = 4.0;
+
+/// A box and what the solid is in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Cell {
+    /// Dilated by one tolerance.
+    pub bounds: Aabb,
+    /// The solid's number among those that share a [`CellSet`].
+    pub solid: u32,
+    leaf_count: u32,
+    first_leaf: u32,
+    token_count: u32,
+    /// The truth table, or the index of the first token.
+    code: u64,
+}
+
+/// Cells of any number of solids, in flat arrays.
+#[derive(Clone, Debug, Default)]
+pub struct CellSet {
+    pub cells: Vec<Cell>,
+    /// Leaves of each cell, ascending.
+    leaves: Vec<u32>,
+    /// Expressions of cells with many leaves, over positions in the cell's leaf list.
+    tokens: Vec<Token>,
+}
+
+/// What decides inside or outside from the states of a cell's leaves.
+#[derive(Clone, Copy, Debug)]
+pub enum Code<'a> {
+    Table(u64),
+    Tokens(&'a [Token]),
+}
+
+impl CellSet {
+    pub fn leaves(&self, cell: &Cell) -> &[u32] {
+        &self.leaves[cell.first_leaf as usize..][..cell.leaf_count as usize]
+    }
+
+    pub fn code(&self, cell: &Cell) -> Code<'_> {
+        if cell.leaf_count as usize <= TABLE_LEAVES {
+            Code::Table(cell.code)
+        } else {
+            Code::Tokens(&self.tokens[cell.code as usize..][..cell.token_count as usize])
+        }
+    }
+
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.cells[..]) + size_of_val(&self.leaves[..]) + size_of_val(&self.tokens[..])
+    }
+
+    /// Adds a cell; `leaves` are those of `tokens`, ascending. Returns its number.
+    fn push(&mut self, solid: u32, bounds: Aabb, leaves: &[u32], tokens: &[Token]) -> u32 {
+        let slot = |leaf: u32| leaves.binary_search(&leaf).map_or(0, |i| i as u32);
+        let first_leaf = self.leaves.len() as u32;
+        self.leaves.extend_from_slice(leaves);
+        let (code, token_count) = if leaves.len() <= TABLE_LEAVES {
+            (truth_table::table(tokens, slot), 0)
+        } else {
+            let start = self.tokens.len();
+            self.tokens.extend(tokens.iter().map(|token| token.renumbered(slot)));
+            (start as u64, tokens.len() as u32)
+        };
+        let leaf_count = leaves.len() as u32;
+        self.cells.push(Cell { bounds, solid, leaf_count, first_leaf, token_count, code });
+        (self.cells.len() - 1) as u32
+    }
+}

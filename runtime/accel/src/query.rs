@@ -1,0 +1,232 @@
+//! A ray under way: what it is after, the frame it is seen in, and what has been found.
+
+use glam::DVec3;
+
+use arsc_embree::{Bounds, Segment, Step};
+use arsc_geometry::{Aabb, Crossings, Ray};
+
+use crate::coincidence::Event;
+use crate::nearest::{Candidate, Nearest};
+
+/// Room around boxes for single precision rays, relative to the largest coordinate: roundings of origin, direction and
+/// slab arithmetic make less than 8 units of 2⁻²⁴.
+const SINGLE_PAD: f64 = 1.0 / (1 << 20) as f64;
+/// Coordinates that Embree is given at most; what lies beyond is traced without it.
+const LARGEST: f64 = 1e15;
+
+/// What a ray is after.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    Nearest,
+    /// Anything at all.
+    Occluded,
+    /// Every transition of every solid; open surfaces are ignored.
+    Collect,
+}
+
+/// The ray in a frame: the world's, or an instance's.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    pub origin: DVec3,
+    /// Unit.
+    pub dir: DVec3,
+    pub inverse_dir: DVec3,
+    /// Lengths here per unit of the ray's `t`.
+    pub scale: f64,
+    /// Number of the frame's first solid, and of its first part.
+    pub first_solid: u32,
+    pub first_part: u32,
+    /// Embree's origin is so far ahead (in lengths of the frame).
+    shift: f64,
+    /// Added to distances that are handed to Embree.
+    slack: f64,
+}
+
+impl View {
+    /// `ray` is in the frame, its `dir` of any length.
+    pub fn new(ray: &Ray, first_solid: u32, first_part: u32) -> View {
+        let scale = ray.dir.length();
+        let dir = ray.dir / scale;
+        let inverse_dir = dir.recip();
+        View { origin: ray.origin, dir, inverse_dir, scale, first_solid, first_part, shift: 0.0, slack: 0.0 }
+    }
+
+    /// The single precision segment through what `extent` holds, from close before it; `None` when it is missed.
+    pub fn segment(&mut self, extent: &Extent, limit: f64) -> Option<Segment> {
+        let (low, high) = slab(&extent.bounds, self.origin, self.inverse_dir);
+        let high = high.min(limit * self.scale);
+        if !(low <= high && high >= 0.0) {
+            return None;
+        }
+        // From slightly behind, so that rounding never puts a surface ahead of the origin behind it.
+        self.shift = low.max(0.0) - extent.pad;
+        self.slack = 2.0 * extent.pad;
+        let single = |v: DVec3| v.as_vec3().to_array();
+        Some(Segment {
+            origin: single(self.origin + self.dir * self.shift),
+            dir: single(self.dir),
+            t_near: 0.0,
+            t_far: self.far(high / self.scale),
+        })
+    }
+
+    /// Embree's distance, rounded up, for the ray's parameter `t`.
+    fn far(&self, t: f64) -> f32 {
+        let distance = t * self.scale - self.shift + self.slack;
+        ((distance * (1.0 + SINGLE_PAD)) as f32).next_up()
+    }
+}
+
+/// A box that Embree's primitives lie in, with the room that single precision needs.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    pub bounds: Aabb,
+    pad: f64,
+}
+
+impl Extent {
+    pub fn new(bounds: Aabb) -> Extent {
+        let largest = if bounds.is_empty() { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
+        let pad = SINGLE_PAD * largest;
+        Extent { bounds: bounds.dilated(pad), pad }
+    }
+
+    /// Embree can be given this box.
+    pub fn admits(bounds: &Aabb) -> bool {
+        bounds.is_finite() && bounds.min.abs().max(bounds.max.abs()).max_element() < LARGEST
+    }
+
+    /// The box of a primitive, rounded outwards.
+    pub fn single(&self, bounds: &Aabb) -> Bounds {
+        let padded = bounds.dilated(self.pad);
+        Bounds {
+            min: padded.min.to_array().map(|x| (x as f32).next_down()),
+            max: padded.max.to_array().map(|x| (x as f32).next_up()),
+        }
+    }
+}
+
+/// Where a line is in a box: parameters of entry and exit, entry above exit when it is missed.
+pub fn slab(bounds: &Aabb, origin: DVec3, inverse_dir: DVec3) -> (f64, f64) {
+    let a = (bounds.min - origin) * inverse_dir;
+    let b = (bounds.max - origin) * inverse_dir;
+    // `f64::min` and `max` pass over the NaN of a ray in a face's plane: it counts as within.
+    let low = |x: f64, y: f64| x.min(y);
+    let high = |x: f64, y: f64| x.max(y);
+    let near = low(a.x, b.x).max(low(a.y, b.y)).max(low(a.z, b.z));
+    let far = high(a.x, b.x).min(high(a.y, b.y)).min(high(a.z, b.z));
+    (near, far)
+}
+
+/// Roots of costly leaves, kept from one cell to the next.
+#[derive(Debug)]
+struct RootCache {
+    keys: [u64; RootCache::SIZE],
+    roots: [Crossings; RootCache::SIZE],
+    len: usize,
+}
+
+impl RootCache {
+    const SIZE: usize = 16;
+}
+
+/// Buffers that outlive a ray.
+#[derive(Debug)]
+pub struct Scratch {
+    pub events: Vec<Event>,
+    pub collected: Vec<Candidate>,
+    cache: RootCache,
+}
+
+impl Default for Scratch {
+    fn default() -> Scratch {
+        let cache = RootCache { keys: [0; RootCache::SIZE], roots: [Crossings::NONE; RootCache::SIZE], len: 0 };
+        Scratch { events: Vec::new(), collected: Vec::new(), cache }
+    }
+}
+
+impl Scratch {
+    fn clear(&mut self) {
+        self.events.clear();
+        self.collected.clear();
+        self.cache.len = 0;
+    }
+
+    /// The roots of leaf `key`, solved once per ray (as long as there is room: the oldest are given up).
+    pub fn roots(&mut self, key: u64, solve: impl FnOnce() -> Crossings) -> Crossings {
+        let cache = &mut self.cache;
+        let filled = cache.len.min(RootCache::SIZE);
+        if let Some(i) = cache.keys[..filled].iter().position(|&k| k == key) {
+            return cache.roots[i];
+        }
+        let roots = solve();
+        let i = cache.len % RootCache::SIZE;
+        cache.keys[i] = key;
+        cache.roots[i] = roots;
+        cache.len += 1;
+        roots
+    }
+}
+
+/// The state that travels with a ray through Embree.
+pub struct Query {
+    pub mode: Mode,
+    /// In the world.
+    pub ray: Ray,
+    pub view: View,
+    pub nearest: Nearest,
+    pub blocked: bool,
+    /// Only this solid is asked, and no surface.
+    pub only: Option<u32>,
+    pub scratch: Box<Scratch>,
+    /// Cells (or whole solids) and surfaces that were tested.
+    pub tests: u32,
+}
+
+impl Query {
+    pub fn new(mode: Mode, ray: &Ray, mut scratch: Box<Scratch>) -> Query {
+        scratch.clear();
+        Query {
+            mode,
+            ray: *ray,
+            view: View::new(ray, 0, 0),
+            nearest: Nearest::new(ray.t_max),
+            blocked: false,
+            only: None,
+            scratch,
+            tests: 0,
+        }
+    }
+
+    /// Takes note of a candidate; false when nothing behind it along the same primitive can matter.
+    pub fn offer(&mut self, candidate: Candidate) -> bool {
+        let within = candidate.t > 0.0 && candidate.t < self.ray.t_max;
+        match self.mode {
+            Mode::Nearest => {
+                self.nearest.offer(candidate);
+                candidate.t <= 0.0
+            }
+            Mode::Occluded => {
+                self.blocked |= within;
+                !within
+            }
+            Mode::Collect => {
+                if within {
+                    self.scratch.collected.push(candidate);
+                }
+                true
+            }
+        }
+    }
+
+    /// Beyond this parameter nothing matters any more.
+    pub fn limit(&self) -> f64 {
+        self.nearest.limit()
+    }
+
+    /// What Embree is told after a primitive; `before` is the limit from before it.
+    pub fn step(&self, before: f64) -> Step {
+        let now = self.limit();
+        if now < before { Step::Hit(self.view.far(now)) } else { Step::Miss }
+    }
+}

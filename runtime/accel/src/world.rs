@@ -1,0 +1,309 @@
+//! All that rays meet, under one Embree scene: cells of solids, flat surfaces and instances as user geometry, triangles
+//! and quads natively with a filter that finds their distance again in double precision. What is not finite is a short
+//! list that every ray meets first.
+
+use std::sync::{Arc, OnceLock};
+
+use arsc_embree::{
+    Bounds, BuildQuality, Callbacks, Candidate as NativeCandidate, Device, EmbreeError, GeometryId,
+    Scene as EmbreeScene, SceneBuilder, Step,
+};
+use arsc_geometry::{Aabb, Ray};
+
+use crate::AccelError;
+use crate::frame::Frame;
+use crate::level::{Level, Prototype};
+use crate::nearest::{Candidate, Target};
+use crate::query::{Extent, Mode, Query, View};
+use crate::surfaces::{Flat, SurfaceModel, Triangles};
+
+/// What a geometry of the Embree scene is; indexed by [`GeometryId`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Solids,
+    Flats,
+    Instances,
+    Triangles,
+    Quads,
+}
+
+/// A placed copy of a prototype.
+pub struct InstanceModel {
+    pub prototype: Arc<EmbreeScene<Prototype>>,
+    pub frame: Frame,
+    pub solid: u32,
+    pub first_part: u32,
+}
+
+impl InstanceModel {
+    fn bounds(&self) -> Aabb {
+        let level = &self.prototype.callbacks().level;
+        level.solids[0].bounds.dilated(level.solids[0].tolerance).transformed(&self.frame.world_from_object)
+    }
+
+    /// Meets the instance: the same query in its frame.
+    fn visit(&self, query: &mut Query) {
+        if query.only.is_some_and(|only| only != self.solid) {
+            return;
+        }
+        let local = query.ray.transformed(&self.frame.object_from_world);
+        let outside = std::mem::replace(&mut query.view, View::new(&local, self.solid, self.first_part));
+        Prototype::trace(&self.prototype, query);
+        query.view = outside;
+    }
+}
+
+/// The primitives of the world's Embree scene.
+pub struct World {
+    pub level: Level,
+    pub surfaces: Vec<SurfaceModel>,
+    first_surface_part: u32,
+    pub instances: Vec<InstanceModel>,
+    kinds: Vec<Kind>,
+    /// Surfaces behind the primitives of `Kind::Flats`.
+    flats: Vec<u32>,
+    /// Surface and triangle behind each native triangle.
+    triangles: Vec<(u32, u32)>,
+    /// Surface behind each native quad.
+    quads: Vec<u32>,
+    /// Instances behind the primitives of `Kind::Instances`, and those that Embree cannot hold.
+    placed: Vec<u32>,
+    open_instances: Vec<u32>,
+    open_surfaces: Vec<u32>,
+    extent: Extent,
+}
+
+/// Vertices and indices for Embree.
+#[derive(Default)]
+struct Native {
+    triangle_vertices: Vec<[f32; 3]>,
+    triangles: Vec<[u32; 3]>,
+    quad_vertices: Vec<[f32; 3]>,
+    quads: Vec<[u32; 4]>,
+}
+
+/// One device serves all scenes of the program.
+pub fn device() -> Result<&'static Device, AccelError> {
+    static DEVICE: OnceLock<Result<Device, EmbreeError>> = OnceLock::new();
+    DEVICE.get_or_init(|| Device::new(0)).as_ref().map_err(|error| error.clone().into())
+}
+
+impl World {
+    pub fn build(
+        level: Level,
+        surfaces: Vec<SurfaceModel>,
+        first_surface_part: u32,
+        instances: Vec<InstanceModel>,
+    ) -> Result<EmbreeScene<World>, AccelError> {
+        let mut world = World {
+            level,
+            surfaces,
+            first_surface_part,
+            instances,
+            kinds: vec![],
+            flats: vec![],
+            triangles: vec![],
+            quads: vec![],
+            placed: vec![],
+            open_instances: vec![],
+            open_surfaces: vec![],
+            extent: Extent::new(Aabb::EMPTY),
+        };
+        let mut bounds = world.level.bounds();
+        let mut native = Native::default();
+        for surface in 0..world.surfaces.len() as u32 {
+            let hull = world.surfaces[surface as usize].bounds();
+            if Extent::admits(&hull) {
+                bounds = bounds.union(&hull);
+                world.add_surface(surface, &mut native);
+            } else {
+                world.open_surfaces.push(surface);
+            }
+        }
+        for instance in 0..world.instances.len() as u32 {
+            let hull = world.instances[instance as usize].bounds();
+            if Extent::admits(&hull) {
+                bounds = bounds.union(&hull);
+                world.placed.push(instance);
+            } else {
+                world.open_instances.push(instance);
+            }
+        }
+        world.extent = Extent::new(bounds);
+        world.commit(&native)
+    }
+
+    fn add_surface(&mut self, surface: u32, native: &mut Native) {
+        match &self.surfaces[surface as usize] {
+            SurfaceModel::Flat(_) => self.flats.push(surface),
+            SurfaceModel::Triangles(mesh) if mesh.is_quad => {
+                native.quads.push([0, 1, 2, 3].map(|i| i + native.quad_vertices.len() as u32));
+                native.quad_vertices.extend(mesh.positions.iter().map(|p| p.as_vec3().to_array()));
+                self.quads.push(surface);
+            }
+            SurfaceModel::Triangles(mesh) => {
+                let first = native.triangle_vertices.len() as u32;
+                native.triangle_vertices.extend(mesh.positions.iter().map(|p| p.as_vec3().to_array()));
+                native.triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| i + first)));
+                self.triangles.extend((0..mesh.triangles.len() as u32).map(|triangle| (surface, triangle)));
+            }
+        }
+    }
+
+    fn commit(mut self, native: &Native) -> Result<EmbreeScene<World>, AccelError> {
+        let users = [
+            (Kind::Solids, self.level.primitive_count()),
+            (Kind::Flats, self.flats.len()),
+            (Kind::Instances, self.placed.len()),
+        ];
+        let users = users.into_iter().filter(|&(_, count)| count > 0);
+        let users: Vec<(Kind, usize)> = users.collect();
+        self.kinds.extend(users.iter().map(|&(kind, _)| kind));
+        if !native.triangles.is_empty() {
+            self.kinds.push(Kind::Triangles);
+        }
+        if !native.quads.is_empty() {
+            self.kinds.push(Kind::Quads);
+        }
+        let kinds = self.kinds.clone();
+        let mut builder = SceneBuilder::new(device()?, Arc::new(self), BuildQuality::High)?;
+        for (_, count) in users {
+            builder.user_geometry(count)?;
+        }
+        if kinds.contains(&Kind::Triangles) {
+            builder.triangles(&native.triangle_vertices, &native.triangles, true)?;
+        }
+        if kinds.contains(&Kind::Quads) {
+            builder.quads(&native.quad_vertices, &native.quads, true)?;
+        }
+        Ok(builder.commit()?)
+    }
+
+    /// Traces a query from the world's frame.
+    pub fn trace(scene: &EmbreeScene<World>, query: &mut Query) {
+        let this = scene.callbacks();
+        this.visit_open(query);
+        if query.blocked {
+            return;
+        }
+        let limit = query.limit();
+        let Some(segment) = query.view.segment(&this.extent, limit) else { return };
+        if query.mode == Mode::Occluded {
+            scene.occluded(&segment, query);
+        } else {
+            scene.intersect(&segment, query);
+        }
+    }
+
+    fn visit_open(&self, query: &mut Query) {
+        self.level.visit_open(query);
+        for &instance in &self.open_instances {
+            if !query.blocked {
+                self.instances[instance as usize].visit(query);
+            }
+        }
+        for &surface in &self.open_surfaces {
+            match &self.surfaces[surface as usize] {
+                SurfaceModel::Flat(flat) => self.visit_flat(surface, flat, query),
+                SurfaceModel::Triangles(mesh) => {
+                    for triangle in 0..mesh.triangles.len() as u32 {
+                        self.visit_triangle(surface, mesh, triangle, true, query);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Open surfaces have no part in what is inside what.
+    fn ignores_surfaces(query: &Query) -> bool {
+        query.mode == Mode::Collect || query.only.is_some()
+    }
+
+    fn visit_flat(&self, surface: u32, flat: &Flat, query: &mut Query) {
+        let Ray { origin, dir, .. } = query.ray;
+        if World::ignores_surfaces(query) {
+            return;
+        }
+        query.tests += 1;
+        if let Some(t) = flat.crossing(origin, dir) {
+            let tolerance = flat.tolerance(origin + dir * t, dir);
+            let part = self.first_surface_part + surface;
+            query.offer(Candidate { t, part, tolerance, target: Target::Flat { surface } });
+        }
+    }
+
+    /// With `strict` the point must be within the triangle; otherwise Embree has decided that, watertight.
+    fn visit_triangle(&self, surface: u32, mesh: &Triangles, triangle: u32, strict: bool, query: &mut Query) {
+        if World::ignores_surfaces(query) {
+            return;
+        }
+        query.tests += 1;
+        let Some((t, weights)) = mesh.crossing(triangle as usize, query.ray.origin, query.ray.dir) else { return };
+        if strict && !(weights.min_element() >= 0.0 && weights.x + weights.y <= 1.0) {
+            return;
+        }
+        let tolerance = mesh.tolerance(triangle as usize, query.ray.dir);
+        let part = self.first_surface_part + surface;
+        query.offer(Candidate { t, part, tolerance, target: Target::Triangle { surface, triangle, weights } });
+    }
+
+    fn visit(&self, query: &mut Query, geometry: GeometryId, primitive: u32) {
+        match self.kinds[geometry.0 as usize] {
+            Kind::Solids => self.level.visit(primitive, query),
+            Kind::Instances => self.instances[self.placed[primitive as usize] as usize].visit(query),
+            Kind::Flats => {
+                let surface = self.flats[primitive as usize];
+                if let SurfaceModel::Flat(flat) = &self.surfaces[surface as usize] {
+                    self.visit_flat(surface, flat, query);
+                }
+            }
+            Kind::Triangles | Kind::Quads => {}
+        }
+    }
+
+    fn visit_native(&self, query: &mut Query, candidate: &NativeCandidate) {
+        let (surface, triangle) = match self.kinds[candidate.geometry.0 as usize] {
+            Kind::Triangles => self.triangles[candidate.primitive as usize],
+            // Embree counts u and v from the first corner on both halves.
+            _ => (self.quads[candidate.primitive as usize], u32::from(candidate.u + candidate.v > 1.0)),
+        };
+        if let SurfaceModel::Triangles(mesh) = &self.surfaces[surface as usize] {
+            self.visit_triangle(surface, mesh, triangle, false, query);
+        }
+    }
+}
+
+impl Callbacks for World {
+    type Query = Query;
+
+    fn bounds(&self, geometry: GeometryId, primitive: u32) -> Bounds {
+        let bounds = match self.kinds[geometry.0 as usize] {
+            Kind::Solids => self.level.primitive_bounds(primitive),
+            Kind::Instances => self.instances[self.placed[primitive as usize] as usize].bounds(),
+            _ => self.surfaces[self.flats[primitive as usize] as usize].bounds(),
+        };
+        self.extent.single(&bounds)
+    }
+
+    fn intersect(&self, query: &mut Query, geometry: GeometryId, primitive: u32, _: Option<GeometryId>) -> Step {
+        let before = query.limit();
+        self.visit(query, geometry, primitive);
+        query.step(before)
+    }
+
+    fn occluded(&self, query: &mut Query, geometry: GeometryId, primitive: u32, _: Option<GeometryId>) -> bool {
+        self.visit(query, geometry, primitive);
+        query.blocked
+    }
+
+    fn filter(&self, query: &mut Query, candidate: NativeCandidate) -> Step {
+        let before = query.limit();
+        self.visit_native(query, &candidate);
+        query.step(before)
+    }
+
+    fn filter_occluded(&self, query: &mut Query, candidate: NativeCandidate) -> bool {
+        self.visit_native(query, &candidate);
+        query.blocked
+    }
+}
