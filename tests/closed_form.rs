@@ -7,6 +7,7 @@
 //! deterministic, the test states its bound. Counts are camera paths.
 
 mod closed_form {
+    mod determinism;
     mod furnace;
     mod irradiance;
     mod specular;

@@ -31,15 +31,29 @@ impl Default for Bands {
 }
 
 impl Bands {
-    #[inline]
-    fn index(&self, lambda_nm: f32) -> Option<usize> {
-        let at = (lambda_nm - self.min_nm as f32) / self.width_nm as f32;
-        // The end of the last band belongs to it.
-        (at >= 0.0 && at <= self.count as f32).then(|| (at as usize).min(self.count - 1))
-    }
-
     pub fn edges_nm(&self) -> Vec<f64> {
         (0..=self.count).map(|i| self.min_nm + i as f64 * self.width_nm).collect()
+    }
+}
+
+/// Finds the band of a wavelength.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct BandIndex {
+    min_nm: f32,
+    per_nm: f32,
+    count: usize,
+}
+
+impl BandIndex {
+    fn new(bands: &Bands) -> BandIndex {
+        BandIndex { min_nm: bands.min_nm as f32, per_nm: (1.0 / bands.width_nm) as f32, count: bands.count }
+    }
+
+    #[inline]
+    fn of(&self, lambda_nm: f32) -> Option<usize> {
+        let at = (lambda_nm - self.min_nm) * self.per_nm;
+        // The end of the last band belongs to it.
+        (at >= 0.0 && at <= self.count as f32).then(|| (at as usize).min(self.count - 1))
     }
 }
 
@@ -50,7 +64,7 @@ pub struct Tile {
     pub y0: u32,
     pub width: u32,
     pub height: u32,
-    bands: Bands,
+    band_index: BandIndex,
     /// `[pixel][band]`: weighted estimate, weight.
     sums: Vec<[f32; 2]>,
     xyz: Vec<[f64; 3]>,
@@ -66,7 +80,7 @@ impl Tile {
             y0,
             width,
             height,
-            bands,
+            band_index: BandIndex::new(&bands),
             sums: vec![[0.0; 2]; pixels * bands.count],
             xyz: vec![[0.0; 3]; pixels],
             samples: vec![0; pixels],
@@ -84,14 +98,14 @@ impl Tile {
             radiance.map(|r| if (0.0..f32::INFINITY).contains(&r) { r } else { 0.0 })
         };
         let pixel = (y * self.width + x) as usize;
-        let row = pixel * self.bands.count;
+        let row = pixel * self.band_index.count;
         let inverse_pdf = 1.0 / wavelengths.pdf;
         let estimates = (radiance.0 * inverse_pdf * weight as f32).to_array();
         let (lambda, knots) = (wavelengths.lambda_nm.to_array(), wavelengths.knots());
         let inverse_pdf = inverse_pdf.to_array();
         let matching = matching_functions();
         for i in 0..4 {
-            if let Some(band) = self.bands.index(lambda[i]) {
+            if let Some(band) = self.band_index.of(lambda[i]) {
                 let [sum, sum_of_weights] = &mut self.sums[row + band];
                 *sum += estimates[i];
                 *sum_of_weights += inverse_pdf[i];

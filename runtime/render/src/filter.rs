@@ -84,6 +84,8 @@ pub struct ReconstructionFilter {
     radius: f64,
     /// Distribution function of |f| at the edges of the cells, from 0 to 1.
     cumulative: Vec<f64>,
+    /// The cell of u = i / CELLS, where the search for a u from there on begins.
+    guide: Vec<u16>,
     /// Signed weight of each cell, one axis.
     weights: Vec<f64>,
 }
@@ -110,8 +112,10 @@ impl ReconstructionFilter {
         for value in &values {
             cumulative.push(cumulative[cumulative.len() - 1] + value.abs() / sum_abs);
         }
+        let cell_of = |u: f64| cumulative.partition_point(|c| *c <= u).clamp(1, CELLS) - 1;
+        let guide = (0..CELLS).map(|i| cell_of(i as f64 / CELLS as f64) as u16).collect();
         let weights = values.iter().map(|v| v.signum() * sum_abs / sum).collect();
-        ReconstructionFilter { radius, cumulative, weights }
+        ReconstructionFilter { radius, cumulative, guide, weights }
     }
 
     #[inline]
@@ -123,7 +127,10 @@ impl ReconstructionFilter {
 
     #[inline]
     fn sample_axis(&self, u: f64) -> (f64, f64) {
-        let cell = self.cumulative.partition_point(|c| *c <= u).clamp(1, CELLS) - 1;
+        let mut cell = usize::from(self.guide[((u * CELLS as f64) as usize).min(CELLS - 1)]);
+        while cell + 1 < CELLS && self.cumulative[cell + 1] <= u {
+            cell += 1;
+        }
         let (low, high) = (self.cumulative[cell], self.cumulative[cell + 1]);
         let within = if high > low { (u - low) / (high - low) } else { 0.5 };
         let x = (cell as f64 + within) * (2.0 * self.radius / CELLS as f64) - self.radius;
