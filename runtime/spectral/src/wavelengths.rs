@@ -13,7 +13,9 @@ use crate::dense::nearest_knot;
 use crate::observer::{KNOTS, matching_functions};
 use crate::{LAMBDA_MAX_NM, LAMBDA_MIN_NM};
 
-/// Share of the mixture that follows the observer's response.
+/// Share of the mixture that follows the observer's response. One half leaves the four wavelengths of a path less than
+/// 1.5 % of excess variance in each of X, Y and Z (uniform sampling: 46 % in Z), while the variance of a 10 nm band
+/// grows by no more than a factor of 2 (median 1.26) over uniform sampling.
 const VISIBLE_SHARE: f64 = 0.5;
 
 /// Cells of the tabulated inverse distribution function; the density is constant within a cell.
