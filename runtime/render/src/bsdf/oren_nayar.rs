@@ -3,8 +3,8 @@
 //! The qualitative model of Oren and Nayar 1994, equation 30: f = reflectance / pi (A + B max(0, cos dphi) sin alpha
 //! tan beta), A = 1 - sigma^2 / (2 (sigma^2 + 0.33)), B = 0.45 sigma^2 / (sigma^2 + 0.09). The angular factor is
 //! evaluated without trigonometry as max(0, wi . wo - cos_i cos_o) / max(cos_i, cos_o) (Fujii).
-//! Deviation: towards grazing incidence the model's albedo approaches A + B / 2, which is above 1 by as much as 1.6 %
-//! for small sigma; there the whole function is divided by that limit, so that no energy is gained.
+//! Deviation: towards grazing incidence the model's albedo approaches A + B / 2, which is above 1 by as much as 1.5 %
+//! for sigma below 0.33; there the whole function is divided by that limit, so that no energy is gained.
 
 use std::f64::consts::FRAC_1_PI;
 
