@@ -165,7 +165,7 @@ fn an_interrupt_writes_what_has_been_rendered() {
     let (folder, script) = scene("ball.arsl", BALL);
     let out = folder.path().join("out");
     let child = Command::new(env!("CARGO_BIN_EXE_arsc"))
-        .args(["render", &script, "--samples", "60000", "--resolution", "512x512", "-o", out.to_str().unwrap()])
+        .args(["render", &script, "--samples", "60000", "--resolution", "160x120", "-o", out.to_str().unwrap()])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
