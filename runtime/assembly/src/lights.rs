@@ -1,8 +1,8 @@
 //! Lights and environments of the IR's normal form → the renderer's.
 
 use arsc_ir::{Ir, NodeKind};
-use arsc_render::{Environment, Light};
-use glam::DAffine3;
+use arsc_render::{Environment, Light, SkySettings};
+use glam::{DAffine3, DVec3};
 
 use crate::AssemblyError;
 use crate::geometry::{members, node};
@@ -18,7 +18,9 @@ pub fn lower(ir: &Ir) -> Result<(Vec<Light>, Vec<Environment>), AssemblyError> {
         };
         match kind {
             NodeKind::Light(light) => lights.push(lower_light(light, &world_from_local)),
-            NodeKind::Environment(environment) => environments.push(lower_environment(environment)?),
+            NodeKind::Environment(environment) => {
+                environments.push(lower_environment(environment, &world_from_local)?);
+            }
             _ => {}
         }
     }
@@ -34,11 +36,25 @@ fn lower_light(light: &arsc_ir::Light, world_from_local: &DAffine3) -> Light {
     }
 }
 
-fn lower_environment(environment: &arsc_ir::Environment) -> Result<Environment, AssemblyError> {
+fn lower_environment(
+    environment: &arsc_ir::Environment,
+    world_from_local: &DAffine3,
+) -> Result<Environment, AssemblyError> {
     match environment {
         arsc_ir::Environment::Constant { radiance } => Ok(Environment::constant(radiance)),
-        arsc_ir::Environment::HosekWilkie { .. } => {
-            Err(AssemblyError::Settings("the renderer does not have the Hosek-Wilkie sky yet".into()))
+        arsc_ir::Environment::HosekWilkie { turbidity, ground_albedo, sun, solar_disc, scale } => {
+            // The model is symmetric about the vertical plane through the sun, so that turning and mirroring it about
+            // the z axis is moving the sun. Tilted, it would have no ground.
+            let up = world_from_local.transform_vector3(DVec3::Z).normalize_or_zero();
+            if !up.abs_diff_eq(DVec3::Z, UP_TOLERANCE) {
+                return Err(AssemblyError::Settings("a sky can be turned about the z axis, but not tilted".into()));
+            }
+            let sun = world_from_local.transform_vector3(*sun);
+            let (turbidity, ground_albedo, solar_disc, scale) = (*turbidity, *ground_albedo, *solar_disc, *scale);
+            Ok(Environment::hosek_wilkie(&SkySettings { turbidity, ground_albedo, sun, solar_disc, scale }))
         }
     }
 }
+
+/// Rounding of a rotation about z, in units of the vertical.
+const UP_TOLERANCE: f64 = 1e-9;
