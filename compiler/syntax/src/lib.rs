@@ -24,6 +24,9 @@ pub const MAX_NESTING: usize = 256;
 /// if`, calls and prefixes. Who recurses over the tree needs a stack for this many frames.
 pub const MAX_DEPTH: usize = 2_000;
 
+/// How many findings a text can have; what is beyond is read and not reported.
+pub const MAX_FINDINGS: usize = 10_000;
+
 /// A syntax tree and what was wrong with the text.
 #[derive(Clone, Debug)]
 pub struct Parsed {

@@ -6,7 +6,7 @@
 
 use arsc_diagnostics::{Applicability, Diagnostic, SourceId, Span, codes};
 
-use crate::MAX_NESTING;
+use crate::{MAX_FINDINGS, MAX_NESTING};
 
 /// What the scan found.
 pub(crate) struct Scan {
@@ -146,7 +146,7 @@ impl Scanner<'_> {
             match (self.bytes.get(self.at), self.bytes.get(self.at + 1)) {
                 (None, _) => {
                     self.endless_comment = true;
-                    self.found.diagnostics.push(
+                    self.report(
                         Diagnostic::new(codes::syntax::UNTERMINATED, "a comment is not closed")
                             .label(self.span(start, start + 2), "starts here")
                             .help("close it with `*/`; block comments nest"),
@@ -188,7 +188,7 @@ impl Scanner<'_> {
             }
         }
         self.at = self.at.min(self.bytes.len());
-        self.found.diagnostics.push(
+        self.report(
             Diagnostic::new(codes::syntax::UNTERMINATED, "a string is not closed")
                 .label(self.span(start, start + 1), "starts here")
                 .label(self.span(self.at, self.at), "and does not end on this line")
@@ -231,6 +231,12 @@ impl Scanner<'_> {
         declares && (ITEM_KEYWORDS.contains(&word) || in_parentheses && is_statement)
     }
 
+    fn report(&mut self, diagnostic: Diagnostic) {
+        if self.found.diagnostics.len() < MAX_FINDINGS {
+            self.found.diagnostics.push(diagnostic);
+        }
+    }
+
     fn nest(&mut self, at: usize) {
         self.nesting += 1;
         if self.nesting > MAX_NESTING {
@@ -245,7 +251,7 @@ impl Scanner<'_> {
     }
 
     fn too_deep(&mut self, at: usize, message: &str) {
-        self.found.diagnostics.push(
+        self.report(
             Diagnostic::new(codes::syntax::NESTING, message)
                 .label(self.span(at, at + 1), format!("more than {MAX_NESTING} levels"))
                 .help("give inner parts a name with `let` or `fn`"),
@@ -281,7 +287,7 @@ impl Scanner<'_> {
             }
             None => {
                 let text = (bracket as char).to_string();
-                self.found.diagnostics.push(
+                self.report(
                     Diagnostic::new(codes::syntax::BRACKET, format!("`{text}` closes nothing"))
                         .label(self.span(self.at, self.at + 1), format!("no `{}` is open here", opening as char))
                         .suggest(self.span(self.at, self.at + 1), "", Applicability::MaybeIncorrect),
@@ -335,7 +341,7 @@ impl Scanner<'_> {
         } else {
             diagnostic = diagnostic.help(format!("add the closing `{closing}`"));
         }
-        self.found.diagnostics.push(diagnostic);
+        self.report(diagnostic);
     }
 
     /// Where the text of a line ends, without a comment and the space before it.
@@ -349,7 +355,7 @@ impl Scanner<'_> {
     }
 
     fn control_character(&mut self) {
-        self.found.diagnostics.push(
+        self.report(
             Diagnostic::new(codes::syntax::NOT_TEXT, "the file holds a control character: it is not a script")
                 .label(self.span(self.at, self.at + 1), format!("character U+{:04X}", self.bytes[self.at]))
                 .help("a scene script is plain UTF-8 text"),
@@ -381,7 +387,7 @@ impl Scanner<'_> {
                 "names are made of ASCII letters, digits and `_`; other characters belong in strings and comments",
             ),
         };
-        self.found.diagnostics.push(diagnostic);
+        self.report(diagnostic);
         // The rest of a run of such characters says nothing new.
         let rest = &self.text[self.at..];
         self.at += rest.find(|c: char| c.is_ascii()).unwrap_or(rest.len());

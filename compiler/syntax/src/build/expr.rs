@@ -28,8 +28,7 @@ impl<'t> Builder<'t> {
     }
 
     pub(super) fn too_deep(&mut self, span: Span) {
-        if span.end > self.too_deep_until {
-            self.too_deep_until = span.end.max(self.base as u32);
+        if !std::mem::replace(&mut self.too_deep, true) {
             let start = span.start as usize;
             self.report(
                 Diagnostic::new(codes::syntax::NESTING, format!("an expression is more than {MAX_DEPTH} levels deep"))

@@ -11,6 +11,7 @@ impl<'t> Builder<'t> {
     /// Reads what stands next in `start..stop` into `items`; gives where it ends, or `None` at the end of the text.
     pub(super) fn top(&mut self, start: usize, stop: usize, comments: &[Span], items: &mut Vec<Item>) -> Option<usize> {
         self.base = start;
+        self.too_deep = false;
         let Ok(mut pairs) = Grammar::parse(Rule::top, &self.text[start..stop]) else {
             // Only pest's own guard of the stack can refuse: the rule matches every text.
             self.unreadable(Rule::strict_item, start, stop);

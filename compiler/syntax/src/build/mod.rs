@@ -19,7 +19,7 @@ use pest::Parser;
 
 use crate::ast::{Expr, ExprKind, Ident, Module};
 use crate::grammar::{Grammar, Pair, Rule};
-use crate::{Parsed, diagnose, scan};
+use crate::{MAX_FINDINGS, Parsed, diagnose, scan};
 
 /// Reads a file.
 pub(crate) fn module(source: SourceId, text: &str) -> Parsed {
@@ -84,15 +84,15 @@ pub(crate) struct Builder<'t> {
     reported: Vec<u32>,
     /// Where the last statement ended that another one followed on the same line: that one needs no second report.
     crowded_at: Option<usize>,
-    /// Where the last report of a tree too deep ended.
-    too_deep_until: u32,
+    /// A tree too deep has been reported in this item: once is enough.
+    too_deep: bool,
 }
 
 impl<'t> Builder<'t> {
     fn new(source: SourceId, text: &'t str, diagnostics: Vec<Diagnostic>) -> Builder<'t> {
         let mut reported: Vec<u32> = diagnostics.iter().filter_map(|d| d.primary_span()).map(|s| s.start).collect();
         reported.sort_unstable();
-        Builder { source, text, base: 0, diagnostics, reported, crowded_at: None, too_deep_until: 0 }
+        Builder { source, text, base: 0, diagnostics, reported, crowded_at: None, too_deep: false }
     }
 
     fn finish(mut self) -> Vec<Diagnostic> {
@@ -116,13 +116,16 @@ impl<'t> Builder<'t> {
     }
 
     fn report(&mut self, diagnostic: Diagnostic) {
-        self.diagnostics.push(diagnostic);
+        if self.diagnostics.len() < MAX_FINDINGS {
+            self.diagnostics.push(diagnostic);
+        }
     }
 
     /// Reports a statement or item that the grammar could not read, unless the scan has already said why.
     fn unreadable(&mut self, rule: Rule, start: usize, end: usize) {
         let first = self.reported.partition_point(|&at| (at as usize) < start);
-        if self.follows_crowded(start) || self.reported.get(first).is_some_and(|&at| (at as usize) < end) {
+        let is_full = self.diagnostics.len() >= MAX_FINDINGS;
+        if is_full || self.follows_crowded(start) || self.reported.get(first).is_some_and(|&at| (at as usize) < end) {
             return;
         }
         let diagnostic = diagnose::diagnose(self.source, self.text, rule, start, end);
