@@ -63,8 +63,12 @@ pub struct Compiled {
 
 impl Compiled {
     pub fn has_errors(&self) -> bool {
-        self.diagnostics.iter().any(Diagnostic::is_error)
+        has_errors(&self.diagnostics)
     }
+}
+
+fn has_errors(diagnostics: &[Diagnostic]) -> bool {
+    diagnostics.iter().any(Diagnostic::is_error)
 }
 
 /// From the root script to the renderer's normal form, with the lints of text, geometry and light. `name` is what
@@ -75,7 +79,7 @@ pub fn compile(name: &str, text: Arc<str>, loader: &dyn Loader, options: &Option
     if let Some(ir) = front.ir.take() {
         let opt = arsc_opt::Options { optimise: options.optimise, ..arsc_opt::Options::default() };
         let optimised = arsc_opt::optimise(ir, &opt);
-        let failed = optimised.diagnostics.iter().any(Diagnostic::is_error);
+        let failed = has_errors(&optimised.diagnostics);
         front.diagnostics.extend(optimised.diagnostics);
         passes = optimised.passes;
         front.ir = (!failed).then_some(optimised.ir);
@@ -119,10 +123,11 @@ impl Front {
         let mut diagnostics = graph.diagnostics;
         if !graph.modules.is_empty() {
             let assets = assets::LoaderAssets { loader, origins: &graph.origins, limit: options.source_bytes };
-            let sema = arsc_sema::Options { params, limits: options.limits.clone() };
+            let sema =
+                arsc_sema::Options { params, limits: options.limits.clone(), check_only: has_errors(&diagnostics) };
             let analysed = arsc_sema::analyse(&graph.modules, &assets, &sema);
             diagnostics.extend(analysed.diagnostics);
-            ir = analysed.ir.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
+            ir = analysed.ir.filter(|_| !has_errors(&diagnostics));
         }
         Front { ir, sources: graph.sources, modules: graph.modules, diagnostics }
     }

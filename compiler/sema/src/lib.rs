@@ -81,6 +81,8 @@ pub struct Options {
     /// `--set name=value`, in order; a later one wins.
     pub params: Vec<Setting>,
     pub limits: Limits,
+    /// Check and do not evaluate: for a program that could not be read whole.
+    pub check_only: bool,
 }
 
 /// What analysis gives.
@@ -98,7 +100,7 @@ pub struct Analysed {
 pub fn analyse(modules: &[Module], assets: &dyn Assets, options: &Options) -> Analysed {
     let Some(root) = modules.last() else { return Analysed { ir: None, diagnostics: Vec::new() } };
     let check::Checked { program, settings, mut diagnostics } = check::check(modules, &options.params);
-    if diagnostics.iter().any(Diagnostic::is_error) {
+    if options.check_only || diagnostics.iter().any(Diagnostic::is_error) {
         return Analysed { ir: None, diagnostics };
     }
     let mut machine = eval::Machine::new(&program, assets, &options.limits);
