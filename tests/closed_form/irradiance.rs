@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use arsc_accel::SurfaceShape;
-use arsc_render::Light;
+use arsc_accel::{Shape, SurfaceShape};
+use arsc_render::{Light, Material};
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::support::{Estimate, Stage, camera, constant, emitter, estimate, facing_down, lambert, render, spot_camera};
@@ -59,6 +59,39 @@ fn rectangle_and_quad() {
     let quad = SurfaceShape::Quad([corner(-a, -b), corner(-a, b), corner(a, b), corner(a, -b)]);
     stage.surface(quad, DAffine3::IDENTITY, emitter(constant(RADIANCE)));
     floor(stage).assert_is(exact, 2e-3);
+}
+
+/// A sphere above the floor, cut by a box at the height of its centre so that `upper` or lower half remains.
+fn half_sphere(upper: bool, height: f64, radius: f64, sphere: Material, cut: Material) -> Stage {
+    let (z0, z1) = if upper { (-2.0, 0.0) } else { (0.0, 2.0) };
+    let cut_shape = Shape::Box { min: DVec3::new(-2.0, -2.0, z0), max: DVec3::new(2.0, 2.0, z1) };
+    let place = DAffine3::from_translation(DVec3::new(0.0, 0.0, height));
+    let mut stage = Stage::default();
+    stage.difference([(Shape::Sphere { radius }, place, sphere), (cut_shape, place, cut)]);
+    stage
+}
+
+/// Half of the points that light sampling proposes have been cut away: what remains looks like the whole from below.
+#[test]
+fn the_lower_half_of_a_sphere() {
+    let stage = half_sphere(false, 2.0, 0.5, emitter(constant(RADIANCE)), lambert(0.0));
+    floor(stage).assert_is(RHO * RADIANCE * 0.25 / 4.0, 5e-3);
+}
+
+/// The wall that the cut leaves is a disk and shows the material of the box. Most of the box is no wall at all.
+#[test]
+fn a_glowing_cut() {
+    let stage = half_sphere(true, 1.2, 0.7, lambert(0.0), emitter(constant(RADIANCE)));
+    floor(stage).assert_is(RHO * RADIANCE * 0.49 / (0.49 + 1.44), 5e-3);
+}
+
+/// An unbounded light is found by scattered rays alone: E = pi L, without noise.
+#[test]
+fn an_infinite_ceiling() {
+    let mut stage = Stage::default();
+    stage.surface(SurfaceShape::Plane, facing_down(DVec3::Z), emitter(constant(RADIANCE)));
+    let mean = floor(stage).mean;
+    assert!((mean / (RHO * RADIANCE) - 1.0).abs() < 1e-6, "{mean}");
 }
 
 /// The back of a one-sided light is dark.

@@ -33,6 +33,17 @@ impl Stage {
         self
     }
 
+    /// The first shape cut by the second, with a material each.
+    pub fn difference(&mut self, operands: [(Shape, DAffine3, Material); 2]) -> &mut Stage {
+        let leaves = operands.map(|(shape, world_from_object, material)| {
+            let material = self.add_material(material);
+            CsgLeaf { shape, world_from_object, material }
+        });
+        let tree = Csg::Difference(Box::new(Csg::Leaf(0)), Box::new(Csg::Leaf(1)));
+        self.geometry.solids.push(Solid { tree, leaves: leaves.to_vec() });
+        self
+    }
+
     pub fn sphere(&mut self, center: DVec3, radius: f64, material: Material) -> &mut Stage {
         self.solid(Shape::Sphere { radius }, DAffine3::from_translation(center), material)
     }

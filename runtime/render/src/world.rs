@@ -73,24 +73,21 @@ impl World {
     }
 
     fn collect_sources(&mut self) {
+        let mut found = Vec::new();
         for (i, part) in self.geometry.parts().iter().enumerate() {
             if let Some(emitter) = &self.materials[part.material.0 as usize].emitter {
                 let power = emitter.exitance() * self.geometry.part_area(PartId(i as u32));
-                if power > 0.0 && power.is_finite() {
-                    self.sources.push(LightSource::Part { part: PartId(i as u32), material: part.material.0 });
-                    self.powers.push(power);
-                }
+                found.push((LightSource::Part { part: PartId(i as u32), material: part.material.0 }, power));
             }
         }
         let radius = self.scene_radius();
-        for (i, light) in self.lights.iter().enumerate() {
-            self.sources.push(LightSource::Light(i as u32));
-            self.powers.push(light.power(radius));
-        }
-        for (i, environment) in self.environments.iter().enumerate() {
-            self.sources.push(LightSource::Environment(i as u32));
-            self.powers.push(environment.power(radius));
-        }
+        let lights = (0..).zip(&self.lights).map(|(i, light)| (LightSource::Light(i), light.power(radius)));
+        found.extend(lights);
+        let environments = (0..).zip(&self.environments);
+        found.extend(environments.map(|(i, environment)| (LightSource::Environment(i), environment.power(radius))));
+        // What is dark or unbounded cannot be sampled by power.
+        found.retain(|(_, power)| *power > 0.0 && power.is_finite());
+        (self.sources, self.powers) = found.into_iter().unzip();
     }
 
     fn choose_probabilities(&mut self) {
