@@ -13,6 +13,7 @@ pub mod stdlib;
 
 pub use loader::{LoadError, Loader};
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use arsc_diagnostics::{Diagnostic, Severity, SourceFile, SourceId, SourceMap, codes};
@@ -126,7 +127,8 @@ impl Front {
             let sema =
                 arsc_sema::Options { params, limits: options.limits.clone(), check_only: has_errors(&diagnostics) };
             let analysed = arsc_sema::analyse(&graph.modules, &assets, &sema);
-            diagnostics.extend(analysed.diagnostics);
+            let caused = Caused::by(&diagnostics, &graph.sources);
+            diagnostics.extend(analysed.diagnostics.into_iter().filter(|d| !caused.explains(d, &graph.sources)));
             ir = analysed.ir.filter(|_| !has_errors(&diagnostics));
         }
         Front { ir, sources: graph.sources, modules: graph.modules, diagnostics }
@@ -139,6 +141,31 @@ impl Front {
         diagnostics.dedup();
         Compiled { ir: self.ir, diagnostics, sources: self.sources, passes }
     }
+}
+
+/// What errors of the text and of modules make of what comes after them: one finding for each cause is enough.
+struct Caused {
+    /// Lines with an error: what else is wrong there may be its consequence.
+    lines: BTreeSet<(SourceId, usize)>,
+    /// Something is missing, so that what seems unused may not be.
+    is_partial: bool,
+}
+
+impl Caused {
+    fn by(diagnostics: &[Diagnostic], sources: &SourceMap) -> Caused {
+        let lines = diagnostics.iter().filter_map(|diagnostic| line(diagnostic, sources)).collect();
+        Caused { lines, is_partial: has_errors(diagnostics) }
+    }
+
+    fn explains(&self, diagnostic: &Diagnostic, sources: &SourceMap) -> bool {
+        self.is_partial && diagnostic.code.is_lint()
+            || line(diagnostic, sources).is_some_and(|line| self.lines.contains(&line))
+    }
+}
+
+fn line(diagnostic: &Diagnostic, sources: &SourceMap) -> Option<(SourceId, usize)> {
+    let span = diagnostic.primary_span()?;
+    Some((span.source, sources.get(span.source).line_column(span.start).line))
 }
 
 /// Gives each `--set` a source of its own and reads its value.
