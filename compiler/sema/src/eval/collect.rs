@@ -1,11 +1,11 @@
 //! From a checked program to the IR.
 
 use arsc_diagnostics::codes::sema as codes;
-use arsc_diagnostics::{Diagnostic, Span};
+use arsc_diagnostics::{Diagnostic, SourceId, Span};
 use arsc_ir::{ActionAt, Ir, NodeId, NodeKind};
 
 use super::{Eval, Machine};
-use crate::code::Entry;
+use crate::code::{Entry, GlobalId};
 use crate::value::Value;
 
 impl Machine<'_> {
@@ -26,6 +26,9 @@ impl Machine<'_> {
             None => None,
         };
         let actions = self.actions(program.actions.as_ref()).map_err(|failure| failures.push(*failure)).ok();
+        if failures.is_empty() {
+            failures.extend(self.unused_values(fallback.source).err().map(|failure| *failure));
+        }
         let (Some(root), Some(actions), true) = (root, actions, failures.is_empty()) else { return Err(failures) };
         Ok(Ir {
             nodes: std::mem::take(&mut self.nodes),
@@ -36,6 +39,21 @@ impl Machine<'_> {
             camera: camera.map(|camera| camera.as_camera().as_ref().clone()),
             actions,
         })
+    }
+
+    /// Evaluates the values of the root script that nothing has asked for: `let x = 1 / 0` is wrong although unused.
+    /// What they add to the scene's tables is dropped.
+    fn unused_values(&mut self, root: SourceId) -> Eval<()> {
+        let (nodes, bsdfs, emitters) = (self.nodes.len(), self.bsdfs.len(), self.emitters.len());
+        for (i, global) in self.program.globals.iter().enumerate() {
+            if global.entry.span.source == root {
+                self.global(GlobalId(i as u32), global.entry.span)?;
+            }
+        }
+        self.nodes.truncate(nodes);
+        self.bsdfs.truncate(bsdfs);
+        self.emitters.truncate(emitters);
+        Ok(())
     }
 
     fn scene(&mut self, entry: Option<&Entry>, fallback: Span) -> Eval<NodeId> {
