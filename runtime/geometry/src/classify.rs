@@ -6,7 +6,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::{Aabb, Placed, Shape};
+use crate::{Aabb, Direct, Placed, Shape};
 
 /// How a box lies to a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +25,9 @@ impl Placed {
         if !cell.is_finite() {
             return Classification::Boundary;
         }
+        if let Some(direct) = self.direct() {
+            return classify_direct(direct, cell);
+        }
         let region = Region::new(self, cell);
         if region.outside(self.shape()) {
             Classification::Outside
@@ -33,6 +36,31 @@ impl Placed {
         } else {
             Classification::Boundary
         }
+    }
+}
+
+/// The cases without a map, exact up to rounding.
+fn classify_direct(direct: &Direct, cell: &Aabb) -> Classification {
+    let (outside, inside) = match *direct {
+        Direct::Ball { center, radius } => {
+            let nearest = center.clamp(cell.min, cell.max).distance_squared(center);
+            let farthest = (center - cell.min).abs().max((center - cell.max).abs()).length_squared();
+            (nearest > radius * radius, farthest <= radius * radius)
+        }
+        Direct::Box { min, max } => {
+            let solid = Aabb::new(min, max);
+            (!solid.overlaps(cell), solid.contains_box(cell))
+        }
+        Direct::HalfSpace { normal, offset } => {
+            let middle = normal.dot(cell.center()) + offset;
+            let reach = normal.abs().dot(cell.extent()) * 0.5;
+            (middle > reach, middle <= -reach)
+        }
+    };
+    match (outside, inside) {
+        (true, _) => Classification::Outside,
+        (_, true) => Classification::Inside,
+        _ => Classification::Boundary,
     }
 }
 

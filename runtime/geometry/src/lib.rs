@@ -25,6 +25,6 @@ pub use area::AreaPoint;
 pub use classify::Classification;
 pub use crossings::Crossings;
 pub use glam::{DAffine3, DMat3, DVec2, DVec3};
-pub use placed::{PlaceError, Placed, SurfacePoint, invert};
+pub use placed::{Direct, PlaceError, Placed, SurfacePoint, invert};
 pub use ray::Ray;
 pub use shape::{LocalPoint, Shape};

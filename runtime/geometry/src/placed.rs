@@ -9,10 +9,47 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
-use crate::{Aabb, Crossings, Shape};
+use crate::{Aabb, Crossings, Shape, cuboid, sphere};
 
 /// Roundings granted to a position: two affine maps (five each), the projection onto the surface, the offset; doubled.
 const ROUNDINGS: f64 = 32.0;
+
+/// What a shape is in the world without its map: the common cases, which need no transform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Direct {
+    /// A sphere under a similarity.
+    Ball { center: DVec3, radius: f64 },
+    /// A box under a translation and positive scale.
+    Box { min: DVec3, max: DVec3 },
+    /// z <= 0 with its unit normal: `normal · p + offset <= 0`.
+    HalfSpace { normal: DVec3, offset: f64 },
+}
+
+impl Direct {
+    fn new(shape: &Shape, map: &DAffine3, inverse: &DAffine3) -> Option<Direct> {
+        let m = map.matrix3;
+        match *shape {
+            Shape::Sphere { radius } => {
+                let square = m.x_axis.length_squared();
+                let off = m.transpose() * m - DMat3::from_diagonal(DVec3::splat(square));
+                let skew = off.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
+                let similar = skew <= 8.0 * f64::EPSILON * square;
+                similar.then(|| Direct::Ball { center: map.translation, radius: radius * square.sqrt() })
+            }
+            Shape::Box { min, max } => {
+                let diagonal = DVec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z);
+                let upright = m == DMat3::from_diagonal(diagonal) && diagonal.min_element() > 0.0;
+                upright.then(|| Direct::Box { min: map.transform_point3(min), max: map.transform_point3(max) })
+            }
+            Shape::HalfSpace => {
+                let row = inverse.matrix3.transpose().z_axis;
+                let length = row.length();
+                Some(Direct::HalfSpace { normal: row / length, offset: inverse.translation.z / length })
+            }
+            _ => None,
+        }
+    }
+}
 
 /// A shape in its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +57,7 @@ pub struct Placed {
     shape: Shape,
     world_from_object: DAffine3,
     object_from_world: DAffine3,
+    direct: Option<Direct>,
     bounds: Aabb,
     /// |det| of the map: volume ratio.
     volume_scale: f64,
@@ -74,6 +112,7 @@ impl Placed {
             shape,
             world_from_object,
             object_from_world,
+            direct: Direct::new(&shape, &world_from_object, &object_from_world),
             bounds: bounds(&shape, &world_from_object, &object_from_world),
             volume_scale: world_from_object.matrix3.determinant().abs(),
             error_slope: unit * out * back,
@@ -95,6 +134,11 @@ impl Placed {
         &self.object_from_world
     }
 
+    /// The shape without a map, if that is possible.
+    pub fn direct(&self) -> Option<&Direct> {
+        self.direct.as_ref()
+    }
+
     /// Tight box in the world, rounded outwards; infinite where the shape is.
     pub fn bounds(&self) -> &Aabb {
         &self.bounds
@@ -111,6 +155,11 @@ impl Placed {
 
     /// All crossings of the line, sorted; `dir` finite and not zero.
     pub fn crossings(&self, origin: DVec3, dir: DVec3) -> Crossings {
+        match self.direct {
+            Some(Direct::Ball { center, radius }) => return sphere::crossings(radius, origin - center, dir),
+            Some(Direct::Box { min, max }) => return cuboid::crossings(min, max, origin, dir),
+            Some(Direct::HalfSpace { .. }) | None => {}
+        }
         let origin = self.object_from_world.transform_point3(origin);
         self.shape.crossings(origin, self.object_from_world.transform_vector3(dir))
     }

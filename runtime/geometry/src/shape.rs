@@ -108,7 +108,7 @@ impl Shape {
     /// Crossings of the line `origin + t dir` in object space; `dir` need not be unit, but finite and not zero.
     pub fn crossings(&self, origin: DVec3, dir: DVec3) -> Crossings {
         match *self {
-            Shape::Sphere { radius } => unit(dir, |d| sphere::crossings(radius, origin, d)),
+            Shape::Sphere { radius } => sphere::crossings(radius, origin, dir),
             Shape::Box { min, max } => cuboid::crossings(min, max, origin, dir),
             Shape::Cylinder { radius, height } => cone::cylinder_crossings(radius, height, origin, dir),
             Shape::InfiniteCylinder { radius } => cone::infinite_cylinder_crossings(radius, origin, dir),

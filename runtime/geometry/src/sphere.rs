@@ -6,15 +6,16 @@ use glam::{DVec2, DVec3};
 
 use crate::{Crossings, LocalPoint};
 
-/// `dir` is unit. The closest approach to the centre is found first, so that nothing cancels for a far origin
+/// `dir` of any length. The closest approach to the centre is found first, so that nothing cancels for a far origin
 /// (Haines, Günther and Akenine-Möller 2019, "Precision improvements for ray/sphere intersection").
 pub(crate) fn crossings(radius: f64, origin: DVec3, dir: DVec3) -> Crossings {
-    let middle = -origin.dot(dir);
-    let closest = (origin + dir * middle).length();
-    if closest >= radius {
+    let inverse = 1.0 / dir.length_squared();
+    let middle = -origin.dot(dir) * inverse;
+    let square = radius * radius - (origin + dir * middle).length_squared();
+    if square <= 0.0 {
         return Crossings::NONE;
     }
-    let half = ((radius - closest) * (radius + closest)).sqrt();
+    let half = (square * inverse).sqrt();
     Crossings::interval(middle - half, 0, middle + half, 0)
 }
 

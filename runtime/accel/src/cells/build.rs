@@ -2,7 +2,7 @@
 
 use arsc_geometry::Aabb;
 
-use crate::cells::dominance::{self, Form};
+use crate::cells::dominance;
 use crate::cells::split::{best_split, halves, state};
 use crate::cells::{CellSet, PAD, TABLE_LEAVES, truth_table};
 use crate::expression::{Expression, Token, Word, bounds, substitute};
@@ -80,7 +80,6 @@ struct Builder<'a> {
     set: &'a mut CellSet,
     number: u32,
     solid: &'a SolidModel,
-    forms: Vec<Option<Form>>,
     pad: f64,
     /// States of leaves in the region at hand; `None` is boundary. Only entries of the region's leaves are current.
     states: Vec<Option<bool>>,
@@ -93,7 +92,6 @@ impl<'a> Builder<'a> {
             set,
             number,
             solid,
-            forms: solid.leaves.iter().map(Form::new).collect(),
             pad: PAD * solid.tolerance,
             states: vec![None; solid.leaves.len()],
             cells_left: 1024 + 64 * solid.leaves.len(),
@@ -174,8 +172,9 @@ impl<'a> Builder<'a> {
 
     /// Whether anything went; `None` when the expression became constant.
     fn drop_dominated(&self, tokens: &mut Vec<Token>, padded: &Aabb) -> Option<bool> {
-        let form = |leaf: u32| self.forms[leaf as usize];
-        let Some(known) = dominance::replacements(tokens, form, padded, self.pad) else { return Some(false) };
+        let Some(known) = dominance::replacements(tokens, &self.solid.leaves, padded, self.pad) else {
+            return Some(false);
+        };
         // Literals become stand-ins for their positions, so that single occurrences can be replaced.
         let numbered: Vec<Token> = tokens.iter().enumerate().map(|(i, t)| t.renumbered(|_| i as u32)).collect();
         let mut out = Vec::with_capacity(tokens.len());

@@ -8,72 +8,48 @@
 
 use glam::DVec3;
 
-use arsc_geometry::{Aabb, Placed, Shape};
+use arsc_geometry::{Aabb, Direct, Placed};
 
 use crate::expression::{Op, Token, Word};
 
-/// A leaf as `f <= 0` with a known quadratic part: 1 for spheres, 0 for half-spaces.
+/// A leaf as `f <= 0` seen from a cell: spheres have quadratic part 1, half-spaces 0.
 #[derive(Clone, Copy, Debug)]
-pub enum Form {
-    Sphere { center: DVec3, radius: f64 },
-    HalfSpace { normal: DVec3, offset: f64 },
+struct Form {
+    quadratic: bool,
+    /// `f` at the cell's centre.
+    value: f64,
+    /// Gradient of the linear part.
+    gradient: DVec3,
+    /// What `f` must differ by so that surfaces are apart.
+    margin: f64,
 }
 
 impl Form {
     /// `None` for shapes that have no such form, ellipsoids among them.
-    pub fn new(leaf: &Placed) -> Option<Form> {
-        let map = leaf.world_from_object();
-        match *leaf.shape() {
-            Shape::Sphere { radius } => {
-                let m = map.matrix3;
-                let scale = m.x_axis.length();
-                let off = m.transpose() * m - glam::DMat3::from_diagonal(DVec3::splat(scale * scale));
-                let skew = off.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
-                let similar = skew <= 1e-14 * scale * scale;
-                similar.then_some(Form::Sphere { center: map.translation, radius: radius * scale })
+    fn new(leaf: &Placed, center: DVec3, gap: f64) -> Option<Form> {
+        match *leaf.direct()? {
+            Direct::Ball { center: c, radius } => {
+                let distance = center.distance(c);
+                let value = (distance - radius) * (distance + radius);
+                Some(Form { quadratic: true, value, gradient: -2.0 * c, margin: gap * (2.0 * radius + gap) })
             }
-            Shape::HalfSpace => {
-                let inverse = leaf.object_from_world();
-                let row = inverse.matrix3.transpose().z_axis;
-                let length = row.length();
-                Some(Form::HalfSpace { normal: row / length, offset: inverse.translation.z / length })
+            Direct::HalfSpace { normal, offset } => {
+                Some(Form { quadratic: false, value: normal.dot(center) + offset, gradient: normal, margin: gap })
             }
-            _ => None,
-        }
-    }
-
-    /// Value and gradient of the non-quadratic part at `p` (`f` itself for the value).
-    fn at(&self, p: DVec3) -> (f64, DVec3) {
-        match *self {
-            Form::Sphere { center, radius } => {
-                let distance = p.distance(center);
-                ((distance - radius) * (distance + radius), -2.0 * center)
-            }
-            Form::HalfSpace { normal, offset } => (normal.dot(p) + offset, normal),
-        }
-    }
-
-    /// What `f` must differ by so that surfaces are `gap` apart.
-    fn margin(&self, gap: f64) -> f64 {
-        match self {
-            Form::Sphere { radius, .. } => gap * (2.0 * radius + gap),
-            Form::HalfSpace { .. } => gap,
+            Direct::Box { .. } => None,
         }
     }
 }
 
-/// The state of `a` in the cell where that of `b` is known, if it follows.
-fn decided(a: &Form, b: &Form, b_inside: bool, cell: &Aabb, gap: f64) -> Option<bool> {
-    let same_kind = matches!(a, Form::Sphere { .. }) == matches!(b, Form::Sphere { .. });
-    if !same_kind {
+/// The state of `a` in the cell (half extent `half`) where that of `b` is known, if it follows.
+fn decided(a: &Form, b: &Form, b_inside: bool, half: DVec3) -> Option<bool> {
+    if a.quadratic != b.quadratic {
         return None;
     }
-    let (center, half) = (cell.center(), cell.extent() * 0.5);
-    let ((fa, ga), (fb, gb)) = (a.at(center), b.at(center));
-    let margin = a.margin(gap) + b.margin(gap);
+    let margin = a.margin + b.margin;
     let reach = |gradient: DVec3| gradient.abs().dot(half);
-    let difference = fa - fb;
-    let spread = reach(ga - gb);
+    let difference = a.value - b.value;
+    let spread = reach(a.gradient - b.gradient);
     if b_inside {
         // f_A < f_B throughout: whatever is in B is in A.
         if difference + spread < -margin {
@@ -82,8 +58,8 @@ fn decided(a: &Form, b: &Form, b_inside: bool, cell: &Aabb, gap: f64) -> Option<
     } else if difference - spread > margin {
         return Some(false);
     }
-    if let (Form::HalfSpace { .. }, Form::HalfSpace { .. }) = (a, b) {
-        let (sum, spread) = (fa + fb, reach(ga + gb));
+    if !a.quadratic {
+        let (sum, spread) = (a.value + b.value, reach(a.gradient + b.gradient));
         if b_inside && sum - spread > margin {
             return Some(false);
         }
@@ -102,12 +78,13 @@ struct Given {
 }
 
 /// Constants for token positions (literals) that others decide in the cell; `None` where nothing is known.
-pub fn replacements(
-    tokens: &[Token],
-    form: impl Fn(u32) -> Option<Form>,
-    cell: &Aabb,
-    gap: f64,
-) -> Option<Vec<Option<bool>>> {
+pub fn replacements(tokens: &[Token], placed: &[Placed], cell: &Aabb, gap: f64) -> Option<Vec<Option<bool>>> {
+    let (center, half) = (cell.center(), cell.extent() * 0.5);
+    let form = |token: &Token| match token.word() {
+        Word::Literal { leaf, .. } => Form::new(&placed[leaf as usize], center, gap),
+        Word::Node { .. } => None,
+    };
+    let forms: Vec<Option<Form>> = tokens.iter().map(form).collect();
     let mut known: Vec<Option<bool>> = vec![None; tokens.len()];
     let mut any = false;
     // Ancestors: end of the node, and how many of `given` are from above it.
@@ -126,7 +103,6 @@ pub fn replacements(
                 push_given(tokens, i, op, length as usize, &mut given);
             }
             Word::Literal { leaf, .. } => {
-                let Some(a) = form(leaf) else { continue };
                 let decides = |other: &Given| {
                     if other.position == i || known[other.position].is_some() {
                         return None;
@@ -134,7 +110,8 @@ pub fn replacements(
                     if other.leaf == leaf {
                         return Some(other.inside);
                     }
-                    form(other.leaf).and_then(|b| decided(&a, &b, other.inside, cell, gap))
+                    let (a, b) = (forms[i].as_ref()?, forms[other.position].as_ref()?);
+                    decided(a, b, other.inside, half)
                 };
                 known[i] = given.iter().find_map(decides);
                 any |= known[i].is_some();
