@@ -11,6 +11,10 @@ use crate::nearest::{Candidate, Nearest};
 /// Room around boxes for single precision rays, relative to the largest coordinate: roundings of origin, direction and
 /// slab arithmetic make less than 8 units of 2⁻²⁴.
 const SINGLE_PAD: f64 = 1.0 / (1 << 20) as f64;
+/// Embree's rays start so many pads early.
+const BEHIND: f64 = 512.0;
+/// Triangles are grown by so many pads: what a ray that meets them at an angle of some thousandths may be off.
+const GROWTH: f64 = 64.0;
 /// Coordinates that Embree is given at most; what lies beyond is traced without it.
 const LARGEST: f64 = 1e15;
 
@@ -58,8 +62,9 @@ impl View {
         if !(low <= high && high >= 0.0) {
             return None;
         }
-        // From slightly behind, so that rounding never puts a surface ahead of the origin behind it.
-        self.shift = low.max(0.0) - extent.pad;
+        // From behind, so that rounding does not put a surface ahead of the origin behind it, one seen at a grazing angle
+        // included; what is met before the true start is turned down in double precision.
+        self.shift = low.max(0.0) - BEHIND * extent.pad;
         self.slack = 2.0 * extent.pad;
         let single = |v: DVec3| v.as_vec3().to_array();
         Some(Segment {
@@ -94,6 +99,22 @@ impl Extent {
     /// Embree can be given this box.
     pub fn admits(bounds: &Aabb) -> bool {
         bounds.is_finite() && bounds.min.abs().max(bounds.max.abs()).max_element() < LARGEST
+    }
+
+    /// A convex polygon grown in its plane by what single precision may be wrong, about its centroid. Slivers are not
+    /// stretched without end: they are left to their neighbours.
+    pub fn grown<const N: usize>(&self, corners: [DVec3; N]) -> [[f32; 3]; N] {
+        const LONGEST: f64 = 1e3;
+        let centroid = corners.iter().sum::<DVec3>() / N as f64;
+        let to_edge = |i: usize| {
+            let (a, b) = (corners[i], corners[(i + 1) % N]);
+            let along = (b - a).normalize_or_zero();
+            let across = centroid - a;
+            (across - along * across.dot(along)).length()
+        };
+        let nearest = (0..N).map(to_edge).fold(f64::INFINITY, f64::min);
+        let scale = (1.0 + GROWTH * self.pad / nearest).min(LONGEST);
+        corners.map(|p| (centroid + (p - centroid) * scale).as_vec3().to_array())
     }
 
     /// The box of a primitive, rounded outwards.

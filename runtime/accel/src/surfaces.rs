@@ -12,6 +12,8 @@ use crate::{AccelError, Surface, SurfaceShape, TriangleMesh};
 const ROUNDINGS: f64 = 32.0;
 /// Surfaces closer than so many error bounds coincide.
 const COINCIDENT: f64 = 4.0;
+/// Points of a triangle keep off its edges by so much of its size.
+const EDGE: f64 = 1e-9;
 
 /// The two halves of a quad, as Embree cuts it.
 const QUAD: [[u32; 3]; 2] = [[0, 1, 3], [2, 3, 1]];
@@ -279,11 +281,13 @@ impl Triangles {
         (t.is_finite() && weights.is_finite()).then_some((t, weights))
     }
 
-    /// The point with these weights of the second and third corner, clamped into the triangle; shading normal beside.
+    /// The point with these weights of the second and third corner, moved to just within the triangle; shading normal
+    /// beside.
     pub fn surface(&self, triangle: usize, weights: DVec2) -> (SurfacePoint, DVec3) {
-        let mut w = weights.max(DVec2::ZERO);
-        if w.x + w.y > 1.0 {
-            w /= w.x + w.y;
+        // Never on an edge: a ray that leaves from there would lie in the neighbour's plane.
+        let mut w = weights.max(DVec2::splat(EDGE));
+        if w.x + w.y > 1.0 - EDGE {
+            w *= (1.0 - EDGE) / (w.x + w.y);
         }
         let [a, b, c] = self.corners(triangle);
         let (ab, ac) = (b - a, c - a);

@@ -1,6 +1,6 @@
 //! All that rays meet, under one Embree scene: cells of solids, flat surfaces and instances as user geometry, triangles
-//! and quads natively with a filter that finds their distance again in double precision. What is not finite is a short
-//! list that every ray meets first.
+//! and quads natively. Embree culls, double precision decides: triangles are given to Embree a little larger than they are,
+//! and a filter finds their hits again. What is not finite is a short list that every ray meets first.
 
 use std::sync::{Arc, OnceLock};
 
@@ -26,6 +26,9 @@ enum Kind {
     Triangles,
     Quads,
 }
+
+/// Triangles are met this far beyond their edges, in units of their size, so that no ray passes between two.
+const SEAM: f64 = 1e-12;
 
 /// A placed copy of a prototype.
 pub struct InstanceModel {
@@ -111,11 +114,12 @@ impl World {
         };
         let mut bounds = world.level.bounds();
         let mut native = Native::default();
+        let mut finite_surfaces = vec![];
         for surface in 0..world.surfaces.len() as u32 {
             let hull = world.surfaces[surface as usize].bounds();
             if Extent::admits(&hull) {
                 bounds = bounds.union(&hull);
-                world.add_surface(surface, &mut native);
+                finite_surfaces.push(surface);
             } else {
                 world.open_surfaces.push(surface);
             }
@@ -130,6 +134,9 @@ impl World {
             }
         }
         world.extent = Extent::new(bounds);
+        for surface in finite_surfaces {
+            world.add_surface(surface, &mut native);
+        }
         world.commit(&native)
     }
 
@@ -137,15 +144,18 @@ impl World {
         match &self.surfaces[surface as usize] {
             SurfaceModel::Flat(_) => self.flats.push(surface),
             SurfaceModel::Triangles(mesh) if mesh.is_quad => {
+                let corners = [0, 1, 2, 3].map(|i| mesh.positions[i]);
                 native.quads.push([0, 1, 2, 3].map(|i| i + native.quad_vertices.len() as u32));
-                native.quad_vertices.extend(mesh.positions.iter().map(|p| p.as_vec3().to_array()));
+                native.quad_vertices.extend(self.extent.grown(corners));
                 self.quads.push(surface);
             }
             SurfaceModel::Triangles(mesh) => {
-                let first = native.triangle_vertices.len() as u32;
-                native.triangle_vertices.extend(mesh.positions.iter().map(|p| p.as_vec3().to_array()));
-                native.triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| i + first)));
-                self.triangles.extend((0..mesh.triangles.len() as u32).map(|triangle| (surface, triangle)));
+                for triangle in 0..mesh.triangles.len() {
+                    let first = native.triangle_vertices.len() as u32;
+                    native.triangles.push([first, first + 1, first + 2]);
+                    native.triangle_vertices.extend(self.extent.grown(mesh.corners(triangle)));
+                    self.triangles.push((surface, triangle as u32));
+                }
             }
         }
     }
@@ -207,7 +217,7 @@ impl World {
                 SurfaceModel::Flat(flat) => self.visit_flat(surface, flat, query),
                 SurfaceModel::Triangles(mesh) => {
                     for triangle in 0..mesh.triangles.len() as u32 {
-                        self.visit_triangle(surface, mesh, triangle, true, query);
+                        self.visit_triangle(surface, mesh, triangle, query);
                     }
                 }
             }
@@ -232,14 +242,13 @@ impl World {
         }
     }
 
-    /// With `strict` the point must be within the triangle; otherwise Embree has decided that, watertight.
-    fn visit_triangle(&self, surface: u32, mesh: &Triangles, triangle: u32, strict: bool, query: &mut Query) {
+    fn visit_triangle(&self, surface: u32, mesh: &Triangles, triangle: u32, query: &mut Query) {
         if World::ignores_surfaces(query) {
             return;
         }
         query.tests += 1;
         let Some((t, weights)) = mesh.crossing(triangle as usize, query.ray.origin, query.ray.dir) else { return };
-        if strict && !(weights.min_element() >= 0.0 && weights.x + weights.y <= 1.0) {
+        if !(weights.min_element() >= -SEAM && weights.x + weights.y <= 1.0 + SEAM) {
             return;
         }
         let tolerance = mesh.tolerance(triangle as usize, query.ray.dir);
@@ -262,13 +271,17 @@ impl World {
     }
 
     fn visit_native(&self, query: &mut Query, candidate: &NativeCandidate) {
-        let (surface, triangle) = match self.kinds[candidate.geometry.0 as usize] {
-            Kind::Triangles => self.triangles[candidate.primitive as usize],
-            // Embree counts u and v from the first corner on both halves.
-            _ => (self.quads[candidate.primitive as usize], u32::from(candidate.u + candidate.v > 1.0)),
+        let (surface, triangles) = match self.kinds[candidate.geometry.0 as usize] {
+            Kind::Triangles => {
+                let (surface, triangle) = self.triangles[candidate.primitive as usize];
+                (surface, triangle..triangle + 1)
+            }
+            _ => (self.quads[candidate.primitive as usize], 0..2),
         };
         if let SurfaceModel::Triangles(mesh) = &self.surfaces[surface as usize] {
-            self.visit_triangle(surface, mesh, triangle, false, query);
+            for triangle in triangles {
+                self.visit_triangle(surface, mesh, triangle, query);
+            }
         }
     }
 }
