@@ -42,10 +42,14 @@ pub(crate) fn run(mut ir: Ir, log: &mut Log) -> Ir {
     let uses = ir.uses();
     let mut values: Vec<Value> = Vec::with_capacity(ir.nodes.len());
     for id in 0..ir.nodes.len() {
-        let used = uses[id] > 0;
-        values.push(if used { simplify(&mut ir, id, &contexts[id], &values, log) } else { Value::Some });
-        if used
-            && let NodeKind::Union(of) = &ir.nodes[id].kind
+        if uses[id] == 0 {
+            values.push(Value::Some);
+            continue;
+        }
+        let value = value_of(&ir.nodes[id].kind, &contexts[id], &values);
+        simplify(&mut ir.nodes[id].kind, value, &values, log);
+        values.push(value);
+        if let NodeKind::Union(of) = &ir.nodes[id].kind
             && of.len() > 1
         {
             let kept = without_absorbed(&ir, of, &bounds, log);
@@ -67,52 +71,46 @@ pub(crate) fn leaf_value(leaf: &Leaf, context: &Aabb) -> Value {
     }
 }
 
-fn simplify(ir: &mut Ir, id: usize, context: &Aabb, values: &[Value], log: &mut Log) -> Value {
-    let value = |operand: NodeId| values[operand.index()];
-    match &mut ir.nodes[id].kind {
+/// The value of a node whose operands' values are known.
+pub(crate) fn value_of(kind: &NodeKind, context: &Aabb, values: &[Value]) -> Value {
+    let value = |operand: &NodeId| values[operand.index()];
+    let any = |of: &[NodeId], wanted: Value| of.iter().any(|operand| value(operand) == wanted);
+    let all = |of: &[NodeId], wanted: Value| of.iter().all(|operand| value(operand) == wanted);
+    match kind {
         NodeKind::Leaf(leaf) => leaf_value(leaf, context),
-        NodeKind::Union(of) => {
-            if let Some(&full) = of.iter().find(|&&operand| value(operand) == Value::Full) {
-                if of.len() > 1 {
-                    log.fire("full_union");
-                    *of = vec![full];
-                }
-                return Value::Full;
-            }
-            drop_all(of, |operand| value(operand) == Value::Empty, "empty_operand", log);
-            if of.is_empty() { Value::Empty } else { Value::Some }
+        NodeKind::Union(of) if any(of, Value::Full) => Value::Full,
+        NodeKind::Union(of) if all(of, Value::Empty) => Value::Empty,
+        NodeKind::Intersection(of) if any(of, Value::Empty) => Value::Empty,
+        NodeKind::Intersection(of) if all(of, Value::Full) => Value::Full,
+        NodeKind::Difference(of) if value(&of[0]) == Value::Empty || any(&of[1..], Value::Full) => Value::Empty,
+        NodeKind::Difference(of) if all(&of[1..], Value::Empty) => value(&of[0]),
+        NodeKind::Transform { child, .. } if value(child) == Value::Empty => Value::Empty,
+        _ => Value::Some,
+    }
+}
+
+/// Drops operands in place; the node's value in its context stays.
+fn simplify(kind: &mut NodeKind, result: Value, values: &[Value], log: &mut Log) {
+    let value = |operand: NodeId| values[operand.index()];
+    match kind {
+        NodeKind::Union(of) if result == Value::Full && of.len() > 1 => {
+            log.fire("full_union");
+            of.retain(|&operand| value(operand) == Value::Full);
+            of.truncate(1);
         }
-        NodeKind::Intersection(of) => {
-            if of.iter().any(|&operand| value(operand) == Value::Empty) {
-                log.fire("empty_intersection");
-                return Value::Empty;
-            }
-            if of.iter().all(|&operand| value(operand) == Value::Full) {
-                return Value::Full;
-            }
+        NodeKind::Union(of) => drop_all(of, |operand| value(operand) == Value::Empty, "empty_operand", log),
+        NodeKind::Intersection(_) if result == Value::Empty => log.fire("empty_intersection"),
+        NodeKind::Intersection(of) if result == Value::Some => {
             drop_all(of, |operand| value(operand) == Value::Full, "full_operand", log);
-            Value::Some
         }
+        NodeKind::Difference(_) if result == Value::Empty => log.fire("empty_difference"),
         NodeKind::Difference(of) => {
-            if value(of[0]) == Value::Empty || of[1..].iter().any(|&operand| value(operand) == Value::Full) {
-                log.fire("empty_difference");
-                return Value::Empty;
-            }
-            let minuend = of[0];
             let mut subtrahends = of.split_off(1);
             drop_all(&mut subtrahends, |operand| value(operand) == Value::Empty, "empty_operand", log);
             of.append(&mut subtrahends);
-            if of.len() == 1 { value(minuend) } else { Value::Some }
         }
-        NodeKind::Group(of) => {
-            drop_all(of, |member| value(member) == Value::Empty, "empty_solid", log);
-            Value::Some
-        }
-        NodeKind::Transform { child, .. } => match value(*child) {
-            Value::Empty => Value::Empty,
-            _ => Value::Some,
-        },
-        NodeKind::Attributes { .. } | NodeKind::Light(_) | NodeKind::Environment(_) => Value::Some,
+        NodeKind::Group(of) => drop_all(of, |member| value(member) == Value::Empty, "empty_solid", log),
+        _ => {}
     }
 }
 

@@ -44,6 +44,7 @@ mod flatten;
 mod fold_transforms;
 mod hoist;
 mod intern;
+mod lints;
 mod pipeline;
 mod propagate_attributes;
 mod separate_media;
@@ -63,13 +64,15 @@ use arsc_ir::Ir;
 pub struct Options {
     /// Off: only the passes that lead to the normal form.
     pub optimise: bool,
+    /// Look for findings about geometry and light (errors are always found).
+    pub lint: bool,
     /// Ceiling on the leaves of all solids expanded to trees (instances count once).
     pub max_leaves: u64,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { optimise: true, max_leaves: 20_000_000 }
+        Options { optimise: true, lint: true, max_leaves: 20_000_000 }
     }
 }
 

@@ -78,6 +78,9 @@ pub const PASSES: &[Pass] = &[
     },
 ];
 
+/// The lints look at the scene after this pass.
+const LINTED_AFTER: &str = "split_lights";
+
 /// What a pass writes down while it runs.
 pub(crate) struct Log<'a> {
     pub options: &'a Options,
@@ -139,6 +142,9 @@ pub fn optimise_observed(ir: Ir, options: &Options, observe: &mut dyn FnMut(&'st
         reports.push(PassReport { name: pass.name, before, after, rewrites: std::mem::take(&mut log.rewrites) });
         before = after;
         observe(pass.name, &ir);
+        if pass.name == LINTED_AFTER && options.lint {
+            log.diagnostics.extend(crate::lints::lint(&ir, options));
+        }
         if log.has_error() {
             break;
         }
@@ -167,7 +173,7 @@ mod tests {
         let moved = b.transform(DAffine3::from_translation(DVec3::X), covered, at);
         let root = b.union(vec![moved], at);
         let optimised = optimise(b.finish(root), &Options { optimise: false, ..Options::default() });
-        assert!(optimised.diagnostics.is_empty());
+        assert!(optimised.diagnostics.iter().all(|finding| !finding.is_error()));
         let ir = optimised.ir;
         let NodeKind::Group(members) = ir.kind(ir.root) else { panic!("the root is a group") };
         assert_eq!(members.len(), 2);

@@ -15,6 +15,27 @@ use crate::intern::hash_f64;
 use crate::pipeline::Log;
 
 pub(crate) fn run(mut ir: Ir, log: &mut Log) -> Ir {
+    let canonical = redirect_to_first(&mut ir);
+    let shared = canonical.iter().enumerate().filter(|(id, first)| first.index() != *id).count();
+    log.fire_times("share", shared);
+    ir.root = canonical[ir.root.index()];
+    ir
+}
+
+/// For each node the first one with the same geometry, whatever the materials are.
+pub(crate) fn canonical_geometry(ir: &Ir) -> Vec<NodeId> {
+    let mut ir = ir.clone();
+    for node in &mut ir.nodes {
+        if let NodeKind::Leaf(leaf) = &mut node.kind {
+            let (Leaf::Solid { material, .. } | Leaf::Surface { material, .. }) = &mut **leaf;
+            *material = None;
+        }
+    }
+    redirect_to_first(&mut ir)
+}
+
+/// For each node the first equal one. Operands become first ones, too.
+fn redirect_to_first(ir: &mut Ir) -> Vec<NodeId> {
     let mut first_of_hash: FxHashMap<u64, u32> = FxHashMap::default();
     first_of_hash.reserve(ir.nodes.len());
     // Nodes of equal hash form a list; u32::MAX ends it.
@@ -25,19 +46,16 @@ pub(crate) fn run(mut ir: Ir, log: &mut Log) -> Ir {
             *child = canonical[child.index()];
         }
         let kind = &ir.nodes[id].kind;
-        let first = *first_of_hash.entry(hash(kind)).or_insert(id as u32);
-        let mut at = first as usize;
+        let mut at = *first_of_hash.entry(hash(kind)).or_insert(id as u32) as usize;
         while at != id && ir.nodes[at].kind != *kind {
             if next_of_hash[at] == u32::MAX {
                 next_of_hash[at] = id as u32;
             }
             at = next_of_hash[at] as usize;
         }
-        log.fire_times("share", usize::from(at != id));
         canonical.push(NodeId(at as u32));
     }
-    ir.root = canonical[ir.root.index()];
-    ir
+    canonical
 }
 
 fn hash(kind: &NodeKind) -> u64 {

@@ -96,12 +96,12 @@ impl Scene {
         if self.rng.random_bool(0.3) {
             let quarter = std::f64::consts::FRAC_PI_2 * f64::from(self.rng.random_range(0..4));
             let angle = if self.family == Family::Friendly { self.rng.random_range(0.0..6.0) } else { quarter };
-            map = map * DAffine3::from_axis_angle([DVec3::X, DVec3::Y, DVec3::Z][self.rng.random_range(0..3)], angle);
+            map *= DAffine3::from_axis_angle([DVec3::X, DVec3::Y, DVec3::Z][self.rng.random_range(0..3)], angle);
         }
         if self.rng.random_bool(0.3) {
             let signs = DVec3::from_array(std::array::from_fn(|_| if self.rng.random_bool(0.3) { -1.0 } else { 1.0 }));
             let size = DVec3::new(self.length(), self.length(), self.length());
-            map = map * DAffine3::from_scale(signs * size.clamp(DVec3::splat(0.4), DVec3::splat(2.0)));
+            map *= DAffine3::from_scale(signs * size.clamp(DVec3::splat(0.4), DVec3::splat(2.0)));
         }
         map
     }

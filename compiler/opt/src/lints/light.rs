@@ -1,0 +1,121 @@
+//! Light that cannot reach the picture: no light at all, lights and cameras inside of opaque solids.
+
+use arsc_diagnostics::{Diagnostic, Span, codes::geometry as codes};
+use arsc_geometry::{Aabb, DVec3};
+use arsc_ir::{Leaf, Light, NodeId, NodeKind};
+
+use super::survey::Survey;
+use super::{Places, is_rendered};
+use crate::bounds::padded;
+use crate::box_tree::BoxTree;
+use crate::drop_operands::Proof;
+
+/// Candidates per light.
+const CANDIDATES: usize = 64;
+/// Leaves looked at for all proofs.
+const CLASSIFICATIONS: usize = 200_000;
+
+pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
+    let ir = survey.ir;
+    if is_rendered(ir) && !has_light(survey) && !(survey.objects.is_empty() && survey.surfaces.is_empty()) {
+        findings.push(
+            Diagnostic::new(codes::NO_LIGHT, "the scene has no light")
+                .label(survey.origin(ir.root), "nothing in here emits: the picture will be black")
+                .help("add a light, an emitter or an environment, for example `sky()`"),
+        );
+    }
+    let opaque: Vec<NodeId> = survey.objects.iter().copied().filter(|id| !survey.transmissive[id.index()]).collect();
+    let boxes: Vec<Aabb> = opaque.iter().map(|id| survey.bounds[id.index()]).collect();
+    let tree = BoxTree::new(&boxes);
+    let holder = |p: DVec3| {
+        let mut candidates = CANDIDATES;
+        let mut found = None;
+        tree.overlapping(&Aabb::new(p, p), |j| {
+            candidates -= 1;
+            if survey.contains(opaque[j], p) == Some(true) {
+                found = Some(opaque[j]);
+            }
+            found.is_none() && candidates > 0
+        });
+        found
+    };
+    if let Some(camera) = &ir.camera
+        && let Some(id) = holder(camera.eye)
+    {
+        findings.push(
+            Diagnostic::new(codes::CAMERA_INSIDE, "the camera is inside of an opaque solid")
+                .label(survey.origin(id), "the camera's eye is in here")
+                .help("move the camera out, or cut a room for it"),
+        );
+    }
+    hidden_lights(survey, &opaque, &boxes, &tree, &holder, findings);
+}
+
+fn has_light(survey: &Survey) -> bool {
+    let ir = survey.ir;
+    let lights = |kind: &NodeKind| matches!(kind, NodeKind::Light(_) | NodeKind::Environment(_));
+    (0..ir.nodes.len() as u32).map(NodeId).any(|id| lights(ir.kind(id)) || survey.emits(id))
+}
+
+fn hidden_lights(
+    survey: &Survey,
+    opaque: &[NodeId],
+    boxes: &[Aabb],
+    tree: &BoxTree,
+    holder: &dyn Fn(DVec3) -> Option<NodeId>,
+    findings: &mut Vec<Diagnostic>,
+) {
+    let ir = survey.ir;
+    let mut hidden: Places<Span> = Places::new();
+    for &member in ir.kind(ir.root).children() {
+        if let Some(p) = point_light(survey, member) {
+            hidden.note(survey.origin(member), holder(p).map(|by| survey.origin(by)));
+        }
+    }
+    let mut proof = Proof { ir, classifications: CLASSIFICATIONS };
+    for &emitting in survey.objects.iter().chain(&survey.surfaces) {
+        let NodeKind::Leaf(leaf) = ir.kind(emitting) else { continue };
+        if !survey.emits(emitting) {
+            continue;
+        }
+        let cell = padded(&extent(survey, emitting, leaf));
+        let mut by = None;
+        if cell.is_finite() {
+            tree.overlapping(&cell, |j| {
+                if opaque[j] != emitting && boxes[j].contains_box(&cell) && proof.inside(opaque[j], &cell, 0) {
+                    by = Some(opaque[j]);
+                }
+                by.is_none()
+            });
+        }
+        hidden.note(survey.origin(emitting), by.map(|by| survey.origin(by)));
+    }
+    findings.extend(hidden.all_found().map(|(origin, by)| {
+        Diagnostic::new(codes::HIDDEN_LIGHT, "a light is inside of an opaque solid")
+            .label(origin, "its light cannot get out")
+            .label(by, "all of it is in here")
+            .help("move the light out, or cut a room for it")
+    }));
+}
+
+/// Where a point light of the root group is.
+fn point_light(survey: &Survey, member: NodeId) -> Option<DVec3> {
+    let is_point = |id: NodeId| match survey.ir.kind(id) {
+        NodeKind::Light(light) => matches!(**light, Light::Point { .. }),
+        _ => false,
+    };
+    match survey.ir.kind(member) {
+        NodeKind::Transform { parent_from_child, child } if is_point(*child) => Some(parent_from_child.translation),
+        _ if is_point(member) => Some(DVec3::ZERO),
+        _ => None,
+    }
+}
+
+fn extent(survey: &Survey, id: NodeId, leaf: &Leaf) -> Aabb {
+    match leaf {
+        Leaf::Solid { .. } => survey.bounds[id.index()],
+        Leaf::Surface { surface, parent_from_object, .. } => {
+            super::coincident::surface_bounds(surface, parent_from_object)
+        }
+    }
+}
