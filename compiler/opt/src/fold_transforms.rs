@@ -5,10 +5,11 @@
 //!
 //! Rewrites: `fold_into_leaf`, `fold_into_light`, `keep_instance`, `ungroup`.
 
-use arsc_geometry::{DAffine3, DVec3};
+use arsc_geometry::{DAffine3, DVec3, invert};
 use arsc_ir::{Environment, Ir, Leaf, Light, Node, NodeId, NodeKind};
 use rustc_hash::FxHashMap;
 
+use crate::bounds::place;
 use crate::pipeline::Log;
 
 /// Solids with fewer leaves are copied instead of instanced.
@@ -140,6 +141,14 @@ fn rank(nodes: &[Node], id: NodeId) -> u8 {
     }
 }
 
+/// Nothing of the leaf is left in double precision.
+fn is_degenerate(leaf: &Leaf) -> bool {
+    match leaf {
+        Leaf::Solid { .. } => place(leaf, &DAffine3::IDENTITY).is_none(),
+        Leaf::Surface { parent_from_object, .. } => invert(parent_from_object).is_none(),
+    }
+}
+
 impl Folding<'_, '_> {
     fn member(&mut self, id: NodeId, map: Option<DAffine3>, instance: bool) -> NodeId {
         let origin = self.source.node(id).origin;
@@ -185,13 +194,16 @@ impl Folding<'_, '_> {
             Light::Distant { irradiance, direction } => {
                 let mapped = map.transform_vector3(direction);
                 // A direction that is unit already keeps its bits.
-                let direction = if mapped == direction { direction } else { mapped.normalize() };
+                let direction = if mapped == direction { direction } else { mapped.normalize_or(direction) };
                 self.push(NodeKind::Light(Box::new(Light::Distant { irradiance, direction })), origin)
             }
         }
     }
 
     fn place(&mut self, child: NodeId, map: DAffine3, origin: arsc_diagnostics::Span) -> NodeId {
+        if invert(&map).is_none() {
+            self.log.degenerate(origin);
+        }
         self.push(NodeKind::Transform { parent_from_child: Box::new(map), child }, origin)
     }
 
@@ -238,6 +250,9 @@ impl Folding<'_, '_> {
                     let (Leaf::Solid { parent_from_object, .. } | Leaf::Surface { parent_from_object, .. }) =
                         &mut *leaf;
                     *parent_from_object = self.maps[map as usize] * *parent_from_object;
+                    if is_degenerate(&leaf) {
+                        self.log.degenerate(self.source.node(id).origin);
+                    }
                     self.log.fire("fold_into_leaf");
                 }
                 results.push(self.finish(id, map, NodeKind::Leaf(leaf)));

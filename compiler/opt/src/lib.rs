@@ -10,7 +10,8 @@
 //! * The root is a `Group`. Its members are independent: each is traced as if alone, and the nearest hit of all wins.
 //!   Where faces of two members coincide, the earlier member has precedence. A member is one of
 //!   1. a *solid*: a tree of `Union`, `Intersection` and `Difference` over `Leaf::Solid`. No other kind of node is
-//!      in it; every Boolean node has at least one operand; `parent_from_object` of a leaf maps to world space;
+//!      in it; intersections and differences have operands (`Union` of nothing is the empty solid, and appears only with
+//!      the optimisation off); `parent_from_object` of a leaf maps to world space;
 //!   2. an *instance*: `Transform { parent_from_child, child }` where `child` is a solid as in 1 whose leaves map to
 //!      the frame of the instance, and `parent_from_child` maps from there to the world. Several instances name
 //!      the same child. Instances do not nest;
@@ -21,12 +22,12 @@
 //!      the environment to the world (normalise after mapping; `Constant` never has one).
 //! * Nodes of solids may be shared (one id, several parents): the graph is acyclic, and expanded to trees it has at
 //!   most [`Options::max_leaves`] leaves. The same node under two parents is the same solid twice.
-//! * Every leaf has `material: Some(id)`. [`arsc_ir::Ir::materials`] holds each material once and only used ones.
+//! * Every leaf has `material: Some(id)`. [`arsc_ir::Ir::materials`] holds each material once.
 //!   Cut rules are resolved: the wall that a subtraction leaves shows the material of the subtracted leaf.
 //! * No `Attributes` node is left, and no unreachable node.
 //! * Operands of Boolean nodes are in the order of precedence: where two faces coincide, the first operand's shows.
-//! * Solids come first in the group, in the order of their first part in the script; then surfaces, lights and
-//!   environments.
+//! * Solids come first in the group, in the order of their first part in the script; then surfaces, then lights
+//!   and environments. [`check_normal_form`] checks all of this.
 //!
 //! # What the scene's union means
 //!
@@ -45,6 +46,7 @@ mod fold_transforms;
 mod hoist;
 mod intern;
 mod lints;
+mod normal_form;
 mod pipeline;
 mod propagate_attributes;
 mod separate_media;
@@ -54,6 +56,7 @@ mod split_lights;
 mod split_union;
 
 pub use counts::Counts;
+pub use normal_form::check_normal_form;
 pub use pipeline::{PASSES, Pass, optimise, optimise_observed};
 
 use arsc_diagnostics::Diagnostic;

@@ -1,9 +1,9 @@
 //! The order of the passes, and the driver that runs them.
 
-use arsc_diagnostics::{Diagnostic, codes};
-use arsc_ir::Ir;
+use arsc_diagnostics::{Diagnostic, Span, codes};
+use arsc_ir::{Ir, verify};
 
-use crate::{Counts, Optimised, Options, PassReport};
+use crate::{Counts, Optimised, Options, PassReport, check_normal_form};
 
 /// A pass: IR → IR.
 pub struct Pass {
@@ -81,6 +81,9 @@ pub const PASSES: &[Pass] = &[
 /// The lints look at the scene after this pass.
 const LINTED_AFTER: &str = "split_lights";
 
+/// So many degenerate shapes are reported.
+const MAX_DEGENERATE: usize = 10;
+
 /// What a pass writes down while it runs.
 pub(crate) struct Log<'a> {
     pub options: &'a Options,
@@ -117,6 +120,17 @@ impl<'a> Log<'a> {
         self.diagnostics.push(diagnostic);
     }
 
+    /// A product of maps has no finite inverse, or the shape under it no finite size.
+    pub(crate) fn degenerate(&mut self, origin: Span) {
+        if self.diagnostics.len() < MAX_DEGENERATE {
+            let message = "the transforms above a shape together leave nothing of it";
+            let diagnostic = Diagnostic::new(codes::sema::DEGENERATE_TRANSFORM, message)
+                .label(origin, "becomes too small, too large or flat")
+                .help("use scale factors that do not multiply to almost zero or infinity");
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
     fn has_error(&self) -> bool {
         self.diagnostics.iter().any(Diagnostic::is_error)
     }
@@ -138,6 +152,9 @@ pub fn optimise_observed(ir: Ir, options: &Options, observe: &mut dyn FnMut(&'st
     for pass in PASSES.iter().filter(|pass| pass.lowering || options.optimise) {
         ir = (pass.run)(ir, &mut log);
         ir.compact();
+        if cfg!(debug_assertions) && !log.has_error() {
+            assert_eq!(verify(&ir), Ok(()), "after {}", pass.name);
+        }
         let after = Counts::of(&ir);
         reports.push(PassReport { name: pass.name, before, after, rewrites: std::mem::take(&mut log.rewrites) });
         before = after;
@@ -149,13 +166,16 @@ pub fn optimise_observed(ir: Ir, options: &Options, observe: &mut dyn FnMut(&'st
             break;
         }
     }
+    if cfg!(debug_assertions) && !log.has_error() {
+        assert_eq!(check_normal_form(&ir), Ok(()));
+    }
     Optimised { ir, diagnostics: log.diagnostics, passes: reports }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arsc_diagnostics::{SourceId, Span};
+    use arsc_diagnostics::SourceId;
     use arsc_geometry::{DAffine3, DVec3, Shape};
     use arsc_ir::{Attributes, Bsdf, Builder, Leaf, Light, Node, NodeKind, Precedence, Spectrum};
 

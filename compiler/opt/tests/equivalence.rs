@@ -94,3 +94,46 @@ fn tiny_and_huge_trees() {
     compare(Family::Lattice, 2040..2060, 1e-3);
     compare(Family::Lattice, 2060..2080, 1e6);
 }
+
+/// Membership of a point in the scene as it is written, by the definition of the operators.
+fn holds(ir: &Ir, id: arsc_ir::NodeId, p: DVec3) -> bool {
+    use arsc_ir::{Leaf, NodeKind};
+    let any = |of: &[arsc_ir::NodeId]| of.iter().any(|&operand| holds(ir, operand, p));
+    match ir.kind(id) {
+        NodeKind::Leaf(leaf) => match **leaf {
+            Leaf::Solid { shape, parent_from_object, .. } => {
+                shape.contains(parent_from_object.inverse().transform_point3(p))
+            }
+            Leaf::Surface { .. } => false,
+        },
+        NodeKind::Union(of) | NodeKind::Group(of) => any(of),
+        NodeKind::Intersection(of) => of.iter().all(|&operand| holds(ir, operand, p)),
+        NodeKind::Difference(of) => holds(ir, of[0], p) && !any(&of[1..]),
+        NodeKind::Transform { parent_from_child, child } => {
+            holds(ir, *child, parent_from_child.inverse().transform_point3(p))
+        }
+        NodeKind::Attributes { child, .. } => holds(ir, *child, p),
+        NodeKind::Light(_) | NodeKind::Environment(_) => false,
+    }
+}
+
+/// Both normal forms hold the points that the scene as written holds: 120 scenes, 200 points each in general position,
+/// where rounding decides nothing.
+#[test]
+fn no_point_is_lost_or_gained() {
+    let mut inside = 0;
+    for seed in 3000..3120 {
+        let family = if seed % 2 == 0 { Family::Friendly } else { Family::Lattice };
+        let source = scene(seed, family, 1.0);
+        let (lowered, optimised) = normal_forms(source.clone());
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        for _ in 0..200 {
+            let p = DVec3::from_array(std::array::from_fn(|_| rng.random_range(-4.0..4.0)));
+            let expected = holds(&source, source.root, p);
+            inside += usize::from(expected);
+            assert_eq!(holds(&lowered, lowered.root, p), expected, "lowered, seed {seed}, {p}");
+            assert_eq!(holds(&optimised, optimised.root, p), expected, "optimised, seed {seed}, {p}");
+        }
+    }
+    assert!(inside > 1000, "only {inside} points are inside");
+}

@@ -1,6 +1,8 @@
 //! From a script on disk to an IR, with its diagnostics shown.
 
-use arsc_driver::{Compiled, LoadError};
+use std::sync::Arc;
+
+use arsc_driver::{Compiled, LoadError, Loader, Options};
 use arsc_ir::Ir;
 use sha2::{Digest, Sha256};
 
@@ -22,9 +24,20 @@ pub struct Scene {
 
 /// Compiles. What there is to say is printed on standard error; the exit says why there is no scene.
 pub fn compile(args: &SceneArgs, quiet: bool) -> Result<Scene, Exit> {
+    with(args, quiet, arsc_driver::compile)
+}
+
+/// Goes only as far as the IR that the script describes, before the optimiser.
+pub fn lower(args: &SceneArgs, quiet: bool) -> Result<Scene, Exit> {
+    with(args, quiet, arsc_driver::lower)
+}
+
+type Stages = fn(&str, Arc<str>, &dyn Loader, &Options) -> Compiled;
+
+fn with(args: &SceneArgs, quiet: bool, stages: Stages) -> Result<Scene, Exit> {
     bug::stage("compile");
     let shown = if args.scene.as_os_str() == "-" { "<stdin>".into() } else { args.scene.display().to_string() };
-    let mut options = arsc_driver::Options::default();
+    let mut options = Options::default();
     options.settings.clone_from(&args.set);
     let text = match read_script(&args.scene) {
         Ok(text) => text,
@@ -34,7 +47,7 @@ pub fn compile(args: &SceneArgs, quiet: bool) -> Result<Scene, Exit> {
         eprintln!("error: cannot use the folder of {shown}, or one given with --allow-read: {error}");
         Exit::CouldNotRun
     })?;
-    let compiled = arsc_driver::compile(&shown, text, &folder, &options);
+    let compiled = stages(&shown, text, &folder, &options);
     let hash = hash(&compiled, &args.set);
     if compiled.has_errors() || !quiet {
         report::human(&compiled);
@@ -47,7 +60,7 @@ pub fn compile(args: &SceneArgs, quiet: bool) -> Result<Scene, Exit> {
 }
 
 /// A script that is no text is the author's business, one that cannot be opened is not.
-fn unreadable(shown: &str, error: &LoadError, options: &arsc_driver::Options) -> Exit {
+fn unreadable(shown: &str, error: &LoadError, options: &Options) -> Exit {
     match arsc_driver::unreadable(shown, error, options) {
         Some(compiled) => {
             report::human(&compiled);

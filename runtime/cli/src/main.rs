@@ -15,6 +15,7 @@ mod failure;
 mod files;
 mod host;
 mod interrupt;
+mod ir;
 mod probe;
 mod progress;
 mod render;
@@ -37,6 +38,8 @@ enum Command {
     Check(check::Args),
     /// Explains the code of a finding
     Explain(explain::Args),
+    /// Prints the scene as the compiler sees it, between its passes
+    Ir(ir::Args),
     Render(render::Args),
     Probe(probe::Args),
     Bench(bench::Args),
@@ -52,6 +55,7 @@ fn run(cli: Cli) -> Exit {
     match cli.command {
         Command::Check(args) => check::run(&args),
         Command::Explain(args) => explain::run(&args),
+        Command::Ir(args) => ir::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Probe(args) => probe::run(&args),
         Command::Bench(args) => bench::run(&args),
