@@ -15,7 +15,7 @@ use serde_json::Value;
 /// Codes that no script can show: `tests/bad_input.rs` does.
 const NO_SCRIPT: [&str; 2] = ["E0004", "E0005"];
 /// Codes that no single script on standard input can show.
-const NO_EXAMPLE: [&str; 3] = ["E0004", "E0005", "E0504"];
+const NO_EXAMPLE: [&str; 4] = ["E0004", "E0005", "E0209", "E0504"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

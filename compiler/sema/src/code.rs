@@ -186,6 +186,8 @@ pub enum Pat {
     },
     Tuple(Vec<Pat>),
     Either(Vec<Pat>),
+    /// Stands where an error was reported.
+    Error,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -248,4 +250,6 @@ pub enum Coercion {
     List(Box<Coercion>),
     /// Element by element; `None` leaves it.
     Tuple(Vec<Option<Coercion>>),
+    /// Of each argument, then of the result.
+    Fn(Vec<Option<Coercion>>),
 }

@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec2, DVec3};
 
 use arsc_ir::{Action, ActionAt, Attributes, Camera, Exposure, Filter, NodeId, Spectrum, Strategy};
 
-use crate::code::FnId;
+use crate::code::{Coercion, FnId};
 use crate::registry::BuiltinId;
 
 #[derive(Clone, Debug)]
@@ -51,6 +51,11 @@ pub enum Closure {
     },
     /// Called with the first arguments only; the others take their defaults.
     Builtin(BuiltinId),
+    /// Another function whose arguments and result are converted.
+    Converted {
+        inner: Arc<Closure>,
+        parts: Box<[Option<Coercion>]>,
+    },
 }
 
 fn bug(wanted: &str, found: &Value) -> ! {

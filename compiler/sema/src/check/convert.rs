@@ -40,6 +40,16 @@ impl Checker<'_> {
         self.shallow(ty).map(&mut |part| self.known(part))
     }
 
+    pub(super) fn has_unknown(&self, ty: &Type) -> bool {
+        let ty = self.shallow(ty);
+        let mut unknown = matches!(ty, Type::Infer(_));
+        ty.map(&mut |part| {
+            unknown |= self.has_unknown(part);
+            part.clone()
+        });
+        unknown
+    }
+
     /// Gives a variable a type; `None` if its class forbids.
     fn bind(&mut self, variable: u32, ty: &Type) -> Option<Conversion> {
         if *ty == Type::Infer(variable) {
@@ -129,9 +139,8 @@ impl Checker<'_> {
                 let mut parts: Vec<(&Type, &Type)> = to.params.iter().zip(from.params.iter()).collect();
                 parts.push((&from.result, &to.result));
                 match self.convert_parts(parts)? {
-                    Conversion::Same => Some(Conversion::Same),
-                    // A function is not wrapped: its types must agree as they are.
-                    Conversion::By(_) => None,
+                    Conversion::By(Coercion::Tuple(parts)) => Some(Conversion::By(Coercion::Fn(parts))),
+                    same => Some(same),
                 }
             }
             (from, to) => (from == to).then_some(Conversion::Same),

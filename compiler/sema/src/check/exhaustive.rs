@@ -25,7 +25,7 @@ impl Checker<'_> {
         span: Span,
     ) {
         let ty = self.known(subject);
-        if ty.is_error() || arms.iter().any(|arm| matches!(arm.pattern.kind, ast::PatternKind::Error)) {
+        if ty.is_error() || checked.iter().any(|arm| has_error(&arm.pattern)) {
             return;
         }
         if !is_matchable(&ty) {
@@ -54,10 +54,18 @@ impl Checker<'_> {
     }
 }
 
+fn has_error(pattern: &Pat) -> bool {
+    match pattern {
+        Pat::Error => true,
+        Pat::Tuple(parts) | Pat::Either(parts) => parts.iter().any(has_error),
+        _ => false,
+    }
+}
+
 fn is_matchable(ty: &Type) -> bool {
     match ty {
         Type::Bool | Type::Int | Type::Str | Type::Infer(_) => true,
-        Type::Tuple(parts) => parts.iter().all(|_| true),
+        Type::Tuple(_) => true,
         ty => ty.is_float_like(),
     }
 }

@@ -51,10 +51,9 @@ impl Checker<'_> {
 
     pub(super) fn list(&mut self, elements: &[ast::Expr], hint: Option<&Type>) -> Typed {
         let hint = hint.map(|hint| self.shallow(hint));
+        // A hint with unknown parts would take the first element's type, not that of all.
         let element_hint = match hint {
-            Some(Type::List(element)) if !matches!(*element, Type::Var(_) | Type::AnyOf(_)) => {
-                Some(self.known(&element))
-            }
+            Some(Type::List(element)) if !self.has_unknown(&element) => Some(self.known(&element)),
             _ => None,
         };
         let mut found = Vec::with_capacity(elements.len());
@@ -62,7 +61,7 @@ impl Checker<'_> {
             found.push((self.expr(element, element_hint.as_ref()), element.span));
         }
         let Some(ty) = self.common(&mut found, element_hint.as_ref(), "elements of a list") else {
-            return Typed::new(Code::Error, Type::list(Type::Error));
+            return Typed::error();
         };
         let codes = found.into_iter().map(|(element, at)| self.coerce(element, &ty, at, None)).collect();
         Typed::new(folded(codes, Code::List, Value::list), Type::list(ty))

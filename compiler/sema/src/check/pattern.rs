@@ -22,14 +22,15 @@ impl Checker<'_> {
     pub(super) fn pattern(&mut self, pattern: &ast::Pattern, ty: &Type) -> Pat {
         let ty = self.shallow(ty);
         match &pattern.kind {
-            PatternKind::Wildcard | PatternKind::Error => Pat::Any,
+            PatternKind::Wildcard => Pat::Any,
+            PatternKind::Error => Pat::Error,
             PatternKind::Binding(name) => Pat::Bind(self.declare_local(name, ty)),
             PatternKind::Literal(literal) => match self.pattern_value(literal, &ty) {
                 Some(Value::Bool(b)) => Pat::Bool(b),
                 Some(Value::Int(i)) => Pat::Int(i),
                 Some(Value::Float(x)) => Pat::Float(x),
                 Some(Value::Str(text)) => Pat::Str(text.to_string()),
-                _ => Pat::Any,
+                _ => Pat::Error,
             },
             PatternKind::Range { start, end, inclusive } => {
                 let bounds = (self.pattern_value(start, &ty), self.pattern_value(end, &ty));
@@ -37,9 +38,13 @@ impl Checker<'_> {
             }
             PatternKind::Tuple(parts) => self.tuple_pattern(parts, &ty, pattern.span),
             PatternKind::Either(alternatives) => {
-                if let Some(span) = alternatives.iter().find_map(binds) {
+                let mut names = Vec::new();
+                alternatives.iter().for_each(|alternative| bound(alternative, &mut names));
+                if let Some(first) = names.first() {
                     let message = "alternatives of a pattern cannot bind names";
-                    self.error(codes::PATTERN, message, span, "a name");
+                    self.error(codes::PATTERN, message, first.span, "a name");
+                    names.into_iter().for_each(|name| self.declare_unknown(name));
+                    return Pat::Error;
                 }
                 Pat::Either(alternatives.iter().map(|alternative| self.pattern(alternative, &ty)).collect())
             }
@@ -88,10 +93,10 @@ impl Checker<'_> {
             (Some(Value::Float(start)), Some(Value::Float(end))) => {
                 (start > end || start == end && !inclusive, Pat::FloatRange { start, end, inclusive })
             }
-            (None, _) | (_, None) => return Pat::Any,
+            (None, _) | (_, None) => return Pat::Error,
             _ => {
                 self.error(codes::PATTERN, "only numbers have ranges", span, "not numbers");
-                return Pat::Any;
+                return Pat::Error;
             }
         };
         if empty {
@@ -110,11 +115,11 @@ fn refutable(pattern: &ast::Pattern) -> Option<Span> {
     }
 }
 
-/// Where a pattern binds a name.
-fn binds(pattern: &ast::Pattern) -> Option<Span> {
+/// The names that a pattern binds.
+fn bound<'p>(pattern: &'p ast::Pattern, names: &mut Vec<&'p ast::Ident>) {
     match &pattern.kind {
-        PatternKind::Binding(_) => Some(pattern.span),
-        PatternKind::Tuple(parts) | PatternKind::Either(parts) => parts.iter().find_map(binds),
-        _ => None,
+        PatternKind::Binding(name) => names.push(name),
+        PatternKind::Tuple(parts) | PatternKind::Either(parts) => parts.iter().for_each(|part| bound(part, names)),
+        _ => {}
     }
 }

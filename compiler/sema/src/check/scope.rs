@@ -169,6 +169,13 @@ impl Checker<'_> {
         slot
     }
 
+    /// Declares a name of which nothing is known, so that its uses report nothing more.
+    pub(super) fn declare_unknown(&mut self, name: &ast::Ident) {
+        let named = Named { name: name.name.clone(), ty: Type::Error, signature: None };
+        let local = Local { named, slot: 0, span: name.span, used: true, is_param: false };
+        self.cx.frame().scopes.last_mut().expect("a frame has a scope").push(local);
+    }
+
     /// A name that hides another one of the same function.
     fn lint_shadowed(&mut self, name: &ast::Ident) {
         if name.name.starts_with('_') || self.is_std(self.cx.module) {

@@ -60,6 +60,14 @@ impl Machine<'_> {
         let closure = callee.as_fn().clone();
         match &*closure {
             Closure::User { function, .. } => self.call_function(*function, args, Some(closure.clone()), span),
+            Closure::Converted { inner, parts } => {
+                self.deepen(span)?;
+                for (arg, part) in args.iter_mut().zip(parts.iter()) {
+                    *arg = self.converted(part.as_ref(), arg.clone(), span)?;
+                }
+                let result = self.call_value(&Value::Fn(inner.clone()), args, span)?;
+                self.converted(parts.last().and_then(Option::as_ref), result, span)
+            }
             Closure::Builtin(id) => {
                 let params = &Registry::get().builtin(*id).params;
                 args.extend(params[args.len()..].iter().map(|param| default_value(&param.default)));

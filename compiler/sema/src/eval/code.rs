@@ -27,6 +27,20 @@ impl Machine<'_> {
             Code::Captured(i) => Ok(self.captured(*i)),
             Code::This => Ok(self.this()),
             Code::Global(id, span) => self.global(*id, *span),
+            other => self.nested(other),
+        }
+    }
+
+    /// What may recurse deeply is counted here.
+    fn nested(&mut self, code: &Code) -> Eval {
+        self.depth += 1;
+        let result = self.eval_nested(code);
+        self.depth -= 1;
+        result
+    }
+
+    fn eval_nested(&mut self, code: &Code) -> Eval {
+        match code {
             Code::And(left, right) => Ok(Value::Bool(self.eval(left)?.as_bool() && self.eval(right)?.as_bool())),
             Code::Or(left, right) => Ok(Value::Bool(self.eval(left)?.as_bool() || self.eval(right)?.as_bool())),
             Code::Field(base, i) => Ok(self.eval_field(base, *i)?),
@@ -48,20 +62,6 @@ impl Machine<'_> {
                     self.eval(otherwise)
                 }
             }
-            other => self.nested(other),
-        }
-    }
-
-    /// What may recurse deeply is counted here.
-    fn nested(&mut self, code: &Code) -> Eval {
-        self.depth += 1;
-        let result = self.eval_nested(code);
-        self.depth -= 1;
-        result
-    }
-
-    fn eval_nested(&mut self, code: &Code) -> Eval {
-        match code {
             Code::List(elements) => {
                 let list = self.eval_all(elements)?;
                 Ok(Value::list(list))
@@ -112,7 +112,7 @@ impl Machine<'_> {
                 Ok(Value::unit())
             }
             Code::Error => panic!("a program with errors is evaluated"),
-            simple => self.eval(simple),
+            Code::Const(_) | Code::Local(_) | Code::Captured(_) | Code::This | Code::Global(..) => self.eval(code),
         }
     }
 
@@ -274,14 +274,22 @@ impl Machine<'_> {
             Coercion::Tuple(parts) => {
                 let mut all = Vec::with_capacity(parts.len());
                 for (part, x) in parts.iter().zip(value.as_tuple().iter()) {
-                    all.push(match part {
-                        Some(part) => self.coerce(part, x.clone(), span)?,
-                        None => x.clone(),
-                    });
+                    all.push(self.converted(part.as_ref(), x.clone(), span)?);
                 }
                 Value::Tuple(all.into())
             }
+            Coercion::Fn(parts) => {
+                let inner = value.as_fn().clone();
+                Value::Fn(Arc::new(Closure::Converted { inner, parts: parts.clone().into() }))
+            }
         })
+    }
+
+    pub(super) fn converted(&mut self, coercion: Option<&Coercion>, value: Value, span: Span) -> Eval {
+        match coercion {
+            Some(coercion) => self.coerce(coercion, value, span),
+            None => Ok(value),
+        }
     }
 
     /// Bounds the native stack where definitions and calls nest.

@@ -78,9 +78,9 @@ impl Machine<'_> {
     }
 
     fn run_collecting(&mut self, entry: Option<&Entry>) -> Eval<Vec<Value>> {
-        if let Some(entry) = entry {
-            self.run_entry(entry)?;
-        }
-        Ok(std::mem::take(&mut self.collected))
+        let ended = entry.map_or(Ok(Value::unit()), |entry| self.run_entry(entry));
+        // Taken whether or not it ended well: the next block collects its own.
+        let collected = std::mem::take(&mut self.collected);
+        ended.map(|_| collected)
     }
 }

@@ -23,6 +23,7 @@ impl Machine<'_> {
             Pat::Tuple(parts) => {
                 parts.iter().zip(value.as_tuple().iter()).all(|(part, value)| self.matches(part, value))
             }
+            Pat::Error => false,
             Pat::Either(alternatives) => alternatives.iter().any(|pattern| self.matches(pattern, value)),
         }
     }
