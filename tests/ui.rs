@@ -3,6 +3,9 @@
 //! Annotations stand in comments: `//~ E0101` for a finding on this line, `//~^ E0101` on the line above (one more `^`
 //! for each further line), `//~v E0101` on the line below, `//~@ E0101` for one in another file or without a place;
 //! several codes may follow. A first line `//# --deny warnings` holds arguments for `arsc check`.
+//!
+//! The renderings of the bad examples in `docs/diagnostics` are pinned in `tests/ui/snapshots`: after a change that is
+//! meant, `INSTA_UPDATE=always cargo test -p arsc --test ui` writes them anew, and the difference is to be read.
 
 use std::collections::BTreeMap;
 use std::io::Write;
