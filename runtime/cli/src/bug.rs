@@ -37,7 +37,9 @@ pub fn guarded(stack: usize, work: impl FnOnce() -> Exit + Send + 'static) -> Ex
         }
     }));
     let thread = std::thread::Builder::new().name("arsc".into()).stack_size(stack).spawn(work);
-    match thread.map(std::thread::JoinHandle::join) {
+    let end = thread.map(std::thread::JoinHandle::join);
+    drop(std::panic::take_hook());
+    match end {
         Ok(Ok(exit)) => exit,
         Ok(Err(_)) => {
             report();
@@ -57,4 +59,17 @@ fn report() {
     eprintln!("\nbug: arsc {} failed in stage `{}`{seed}", env!("CARGO_PKG_VERSION"), situation.stage);
     eprintln!("  {}", panic.replace('\n', "\n  "));
     eprintln!("This is not your scene's fault. Please report it with these lines, the command line and the scene.");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_in_any_thread_of_the_work_is_a_bug_and_not_the_end() {
+        assert_eq!(guarded(1 << 20, || Exit::Clean), Exit::Clean);
+        assert_eq!(guarded(1 << 20, || panic!("a bug of the test")), Exit::Bug);
+        let in_worker = || std::thread::scope(|s| s.spawn(|| panic!("a bug in a worker")).join().is_ok());
+        assert_eq!(guarded(1 << 20, move || if in_worker() { Exit::Clean } else { panic!("its echo") }), Exit::Bug);
+    }
 }
