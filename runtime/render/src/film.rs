@@ -19,7 +19,9 @@ pub const TILE: u32 = 16;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bands {
     pub min_nm: f64,
+    /// Positive.
     pub width_nm: f64,
+    /// At least 1.
     pub count: usize,
 }
 
@@ -160,6 +162,16 @@ impl Film {
 
     pub fn resolution(&self) -> [u32; 2] {
         self.resolution
+    }
+
+    /// Bytes that a film of these pixels and its picture take, so that a caller can refuse what does not fit.
+    pub fn bytes(resolution: [u32; 2], crop: Option<[u32; 4]>, bands: &Bands) -> u64 {
+        let area = |width: u32, height: u32| u64::from(width) * u64::from(height);
+        let [x0, y0, x1, y1] = crop.unwrap_or([0, 0, resolution[0], resolution[1]]);
+        let covered = area(x1.min(resolution[0]).saturating_sub(x0), y1.min(resolution[1]).saturating_sub(y0));
+        let n = bands.count as u64;
+        let (sums, picture) = (n * 8 + 24 + 4, n * 4 + 12);
+        covered.saturating_mul(sums).saturating_add(area(resolution[0], resolution[1]).saturating_mul(picture))
     }
 
     /// Adds the sums of a film of other samples.
@@ -306,5 +318,7 @@ mod tests {
         }
         assert_eq!(film.samples_per_pixel(), (1, 1));
         assert_eq!(Film::new([4, 4], Some([9, 9, 2, 2]), Bands::default()).paths(), 0);
+        assert_eq!(Film::bytes([40, 30], Some([5, 7, 39, 25]), &Bands::default()), 34 * 18 * 404 + 1200 * 200);
+        assert_eq!(Film::bytes([4, 4], Some([9, 9, 2, 2]), &Bands::default()), 16 * 200);
     }
 }

@@ -62,7 +62,7 @@ const WAVELENGTHS: u32 = 1;
 pub fn path_trace(world: &World, camera: &Camera, settings: &PathTraceSettings, progress: &dyn Progress) -> Film {
     let mut film = Film::new(camera.resolution(), settings.crop, settings.bands);
     let mut done = 0;
-    while done < settings.samples && !progress.cancelled() {
+    while done < settings.samples && !film.tiles.is_empty() && !progress.cancelled() {
         let pass = done.clamp(1, LONGEST_PASS).min(settings.samples - done);
         film.tiles.par_iter_mut().for_each(|tile| {
             if !progress.cancelled() {
