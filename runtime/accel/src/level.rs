@@ -118,7 +118,7 @@ impl Level {
                 Open::Outer { cell, core } => {
                     let ray = self.near_ray(self.outer.cells[cell as usize].solid, query);
                     let (low, high) = slab(&core, ray.origin, query.view.inverse_dir);
-                    if low <= high {
+                    if low <= high && !core.is_empty() {
                         self.visit_cell(&self.outer, cell, &ray, (f64::NEG_INFINITY, low), query);
                         self.visit_cell(&self.outer, cell, &ray, (high, f64::INFINITY), query);
                     } else {
