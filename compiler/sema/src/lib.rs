@@ -7,10 +7,13 @@ mod actions;
 mod check;
 mod code;
 mod eval;
+mod reference;
 mod registry;
 mod suggest;
 mod types;
 mod value;
+
+pub use reference::reference;
 
 use std::sync::Arc;
 

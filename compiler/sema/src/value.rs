@@ -178,7 +178,7 @@ impl Value {
 
     pub fn as_filter(&self) -> Filter {
         match self {
-            Value::Filter(filter) => (**filter).clone(),
+            Value::Filter(filter) => **filter,
             other => bug("a filter", other),
         }
     }

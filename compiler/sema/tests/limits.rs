@@ -72,3 +72,19 @@ fn deep_texts_are_survived() {
     let found = codes(&text, Limits::default());
     assert!(found.is_empty() || found == ["E0204"], "{found:?}");
 }
+
+/// The time is not asserted, for machines differ: it is printed, and stays far below a second even unoptimised.
+#[test]
+fn a_hundred_thousand_primitives() {
+    let text = "
+        fn ball(i: int, j: int) -> solid {
+            let r = 0.2 + 0.1 * sin(i * 7deg) * cos(j * 11deg)
+            sphere(radius: r) |> translate(x: i, y: j) |> rotate_z(1deg * i)
+        }
+        scene { for i in 0..400 { for j in 0..250 { ball(i, j) } } }";
+    let start = std::time::Instant::now();
+    let analysed = Session::default().analyse(text, &[], Options::default());
+    println!("100 000 primitives: {:?}", start.elapsed());
+    // A leaf and two transforms each, and the root.
+    assert_eq!(analysed.ir.unwrap().nodes.len(), 300_001);
+}

@@ -229,9 +229,19 @@ impl Checker<'_> {
     }
 
     pub(super) fn not_a_solid(&mut self, found: &Type, span: Span) {
-        let diagnostic = Diagnostic::new(codes::NOT_A_SOLID, "a surface cannot be an operand of a Boolean operation");
-        let label = format!("this is {} and encloses no volume", found.with_article());
-        self.report(diagnostic.label(span, label).help("use a closed solid, such as `half_space()` for a plane"));
+        let mut element = found.clone();
+        while let Type::List(inner) = element {
+            element = inner.as_ref().clone();
+        }
+        let (message, label, help) = if element == Type::Shape {
+            let message = "only solids can be operands of a Boolean operation, but this may be open or a light";
+            (message, "not known to be solid", "keep solids apart from other shapes: in a list of their own")
+        } else {
+            let message = "a surface cannot be an operand of a Boolean operation";
+            (message, "and encloses no volume", "use a closed solid, such as `half_space()` for a plane")
+        };
+        let label = format!("this is {} {label}", found.with_article()).replace("` not", "`, not");
+        self.report(Diagnostic::new(codes::NOT_A_SOLID, message).label(span, label).help(help));
     }
 }
 

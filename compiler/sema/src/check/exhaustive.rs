@@ -36,7 +36,7 @@ impl Checker<'_> {
         for (arm, written) in checked.iter().zip(arms) {
             let row = vec![arm.pattern.clone()];
             let mut steps = 0;
-            if useful(&rows, &row, &[ty.clone()], &mut steps).is_none() {
+            if useful(&rows, &row, std::slice::from_ref(&ty), &mut steps).is_none() {
                 let diagnostic = Diagnostic::new(codes::UNREACHABLE_ARM, "this arm can never be chosen");
                 self.report(diagnostic.label(written.pattern.span, "covered by the arms before"));
             }

@@ -43,9 +43,15 @@ impl Checker<'_> {
     }
 }
 
-/// Within rounding to three or more digits of a simple fraction of π, and no round number of degrees.
+/// Fractions that are also recognised when written with two digits only: 1.57, 3.14, 6.28.
+const COMMON: &[f64] = &[0.5, 1.0, 2.0];
+
+/// A simple fraction of π, rounded or cut off: no plain number of degrees.
 fn is_typed_pi_fraction(value: f64) -> bool {
-    let round = (value * 100.0).round() == value * 100.0;
-    let near = |fraction: &f64| (value.abs() - fraction * std::f64::consts::PI).abs() < 6e-4;
-    (!round || value == 3.14 || value == 1.57) && FRACTIONS.iter().any(near) || value == 3.14 || value == 1.57
+    let value = value.abs();
+    let two_digits = |x: f64| (x * 100.0).round() / 100.0;
+    if two_digits(value) == value {
+        return COMMON.iter().any(|fraction| two_digits(fraction * std::f64::consts::PI) == value);
+    }
+    FRACTIONS.iter().any(|fraction| (value - fraction * std::f64::consts::PI).abs() < 6e-4)
 }

@@ -117,22 +117,6 @@ impl Builtin {
     pub fn required(&self) -> usize {
         self.params.iter().filter(|param| matches!(param.default, Default::Required)).count()
     }
-
-    /// `sphere(radius: float = 1, center: point = (0, 0, 0)) -> solid`
-    pub fn signature(&self) -> String {
-        let mut text = format!("{}(", self.name);
-        for (i, param) in self.params.iter().enumerate() {
-            let dots = if self.variadic && i + 1 == self.params.len() { "…" } else { "" };
-            let default = match &param.default {
-                Default::Required => String::new(),
-                Default::Optional => "?".into(),
-                Default::Value { text, .. } => format!(" = {text}"),
-            };
-            let separator = if i == 0 { "" } else { ", " };
-            text += &format!("{separator}{}{dots}: {}{default}", param.name, param.ty);
-        }
-        text + &format!(") -> {}", self.result)
-    }
 }
 
 /// A named value of the prelude.
@@ -142,6 +126,9 @@ pub struct Constant {
     pub ty: Type,
     pub value: Value,
 }
+
+/// The builtins of one file.
+type Family = fn() -> Vec<Builtin>;
 
 pub struct Registry {
     pub builtins: Vec<Builtin>,
@@ -157,7 +144,7 @@ impl Registry {
     }
 
     fn build() -> Registry {
-        let families: [(&'static str, fn() -> Vec<Builtin>); 13] = [
+        let families: [(&'static str, Family); 13] = [
             ("Solids", solids::builtins),
             ("Surfaces", surfaces::builtins),
             ("Boolean operations", csg::builtins),

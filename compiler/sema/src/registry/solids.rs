@@ -144,14 +144,8 @@ fn block(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
         (Value::Missing, min, max) if min.is_given() && max.is_given() => {
             let (min, max) = (min.as_vec3(), max.as_vec3());
             if !min.cmplt(max).all() {
-                return Err(site
-                    .fail_arg(
-                        3,
-                        codes::OUT_OF_RANGE,
-                        "`max` of a box must exceed `min` in every axis",
-                        "the larger corner",
-                    )
-                    .into());
+                let message = "`max` of a box must exceed `min` in every axis";
+                return Err(site.fail_arg(3, codes::OUT_OF_RANGE, message, "the larger corner"));
             }
             m.solid(Shape::Box { min, max }, DAffine3::IDENTITY, site)
         }

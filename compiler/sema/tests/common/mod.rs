@@ -68,6 +68,12 @@ impl Session {
         self.load(name, &text, true)
     }
 
+    /// A module of the standard library by itself.
+    pub fn analyse_std(&mut self, name: &str, text: &str) -> Analysed {
+        self.load(name, text, true);
+        analyse(&self.modules, &Files, &Options::default())
+    }
+
     pub fn analyse(&mut self, text: &str, params: &[(&str, &str)], options: Options) -> Analysed {
         self.load("scene.arsl", text, false);
         let params = params.iter().map(|(name, text)| {
