@@ -200,3 +200,28 @@ fn bad_geometry_is_an_error() {
     assert!(build(SceneGeometry { surfaces: vec![nan], ..SceneGeometry::default() }).is_err());
     assert!(build(SceneGeometry::default()).unwrap().intersect(&Ray::new(DVec3::ZERO, DVec3::X)).is_none());
 }
+
+/// Two thousand spheres that all touch in one point, alternately added and taken away: no cut separates them there. The
+/// build stays within its budget, and rays past the point are right.
+#[test]
+fn inseparable_operands_are_bounded_in_cost() {
+    let count = 2000;
+    let leaves: Vec<CsgLeaf> = (0..count)
+        .map(|i| {
+            let radius = 1.0 - 0.5 * f64::from(i) / f64::from(count);
+            let angle = f64::from(i) * 2.4;
+            sphere(DVec3::new(angle.cos() * 0.3, angle.sin() * 0.3, 0.95).normalize() * radius, radius, i)
+        })
+        .collect();
+    let tree = (1..count).fold(Csg::Leaf(0), |tree, i| {
+        if i % 2 == 0 { Csg::Union(vec![tree, Csg::Leaf(i)]) } else { minus(tree, Csg::Leaf(i)) }
+    });
+    let [oracle, local] = &scenes(solid(tree, leaves))[..] else { unreachable!() };
+    assert!(local.stats().cells < 100 * count as usize, "{:?}", local.stats());
+    for i in 0..200 {
+        let at = f64::from(i) * 0.01 - 1.0;
+        let ray = Ray::new(DVec3::new(at, 3.0, 0.4 + 0.5 * at), DVec3::new(0.1, -1.0, 0.05).normalize());
+        let (a, b) = (oracle.intersect(&ray), local.intersect(&ray));
+        assert_eq!(a.map(|hit| hit.part), b.map(|hit| hit.part));
+    }
+}

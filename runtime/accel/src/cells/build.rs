@@ -15,6 +15,12 @@ const WORTH: f64 = 0.97;
 /// Cuts in a row that may save nothing while the cell has many leaves: often only the next one helps.
 const GAINLESS: u32 = 10;
 const MAX_DEPTH: u32 = 96;
+/// Leaf classifications (or the like) granted to a solid: when they are spent, what is left becomes cells with large
+/// expressions, slower and still right. Ordinary solids need a tenth.
+const WORK_PER_LEAF: u64 = 10_000;
+const LEAST_WORK: u64 = 1_000_000;
+/// Candidate planes per cell times halves, about: what choosing one costs per leaf.
+const SPLIT_WORK: u64 = 40;
 /// Tightening rounds per cell.
 const ROUNDS: usize = 4;
 
@@ -84,6 +90,7 @@ struct Builder<'a> {
     /// States of leaves in the region at hand; `None` is boundary. Only entries of the region's leaves are current.
     states: Vec<Option<bool>>,
     cells_left: usize,
+    work_left: u64,
 }
 
 impl<'a> Builder<'a> {
@@ -95,6 +102,7 @@ impl<'a> Builder<'a> {
             pad: PAD * solid.tolerance,
             states: vec![None; solid.leaves.len()],
             cells_left: 1024 + 64 * solid.leaves.len(),
+            work_left: LEAST_WORK + WORK_PER_LEAF * solid.leaves.len() as u64,
         }
     }
 
@@ -113,12 +121,17 @@ impl<'a> Builder<'a> {
         }
     }
 
+    fn spend(&mut self, work: u64) {
+        self.work_left = self.work_left.saturating_sub(work);
+    }
+
     /// Reduces the expression to what matters in the region, and the region to where the surface is. Returns the leaves
     /// that are left; `None` when no surface is.
     fn simplify(&mut self, work: &mut Work) -> Option<Vec<u32>> {
         let mut leaves = leaves_of(&work.tokens);
         for _ in 0..ROUNDS {
             let padded = work.region.dilated(self.pad);
+            self.spend(leaves.len() as u64);
             for &leaf in &leaves {
                 self.states[leaf as usize] = state(&self.solid.leaves[leaf as usize], &padded);
             }
@@ -129,7 +142,12 @@ impl<'a> Builder<'a> {
             if leaves.len() <= TABLE_LEAVES {
                 self.drop_redundant(&mut work.tokens, &mut leaves)?;
             }
-            if (2..=DOMINANCE_LEAVES).contains(&leaves.len()) && self.drop_dominated(&mut work.tokens, &padded)? {
+            let pairs = (leaves.len() * leaves.len()) as u64;
+            let compare = (2..=DOMINANCE_LEAVES).contains(&leaves.len());
+            if compare {
+                self.spend(pairs / 16);
+            }
+            if compare && self.drop_dominated(&mut work.tokens, &padded)? {
                 leaves = leaves_of(&work.tokens);
             }
             let tight = self.tightened(&work.region, &leaves, &work.tokens);
@@ -203,10 +221,11 @@ impl<'a> Builder<'a> {
     }
 
     /// Two halves, if cutting pays.
-    fn cut(&self, work: &Work, leaves: &[u32]) -> Option<(Work, Work)> {
-        if leaves.len() == 1 || work.depth >= MAX_DEPTH || self.cells_left == 0 {
+    fn cut(&mut self, work: &Work, leaves: &[u32]) -> Option<(Work, Work)> {
+        if leaves.len() == 1 || work.depth >= MAX_DEPTH || self.cells_left == 0 || self.work_left == 0 {
             return None;
         }
+        self.spend(SPLIT_WORK * leaves.len() as u64);
         let split = best_split(&work.region, leaves, &work.tokens, &self.solid.leaves, self.pad)?;
         let gain = split.relative_cost < WORTH;
         if !gain && (leaves.len() <= TABLE_LEAVES || work.gainless >= GAINLESS) {
