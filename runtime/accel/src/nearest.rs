@@ -1,8 +1,9 @@
-//! The nearest candidate along a ray, with ties settled by part number.
+//! The nearest candidate along a ray, with ties settled by a fixed order.
 //!
 //! Surfaces of separate solids and open surfaces may coincide too (a lamp in the plane of a ceiling). Within the greater
-//! of the two tolerances the lower part wins, and the point's error bound is widened so that rays that leave start
-//! beyond both.
+//! of the two tolerances an open surface wins over a solid and a later surface over an earlier one, as if laid upon it;
+//! of two solids the first wins, as the first operand of a union does. The point's error bound is widened so that rays
+//! that leave start beyond both.
 
 use glam::DVec2;
 
@@ -34,6 +35,18 @@ pub enum Target {
         triangle: u32,
         weights: DVec2,
     },
+}
+
+impl Candidate {
+    /// Which of two that coincide is seen.
+    fn lies_upon(&self, other: &Candidate) -> bool {
+        let is_solid = |candidate: &Candidate| matches!(candidate.target, Target::Solid { .. });
+        match (is_solid(self), is_solid(other)) {
+            (true, true) => self.part < other.part,
+            (false, false) => self.part > other.part,
+            (solid, _) => !solid,
+        }
+    }
 }
 
 /// The best so far.
@@ -69,7 +82,7 @@ impl Nearest {
             if candidate.part != best.part {
                 self.tie = self.tie.max(apart.abs());
             }
-            if candidate.part < best.part {
+            if candidate.lies_upon(best) {
                 *best = candidate;
             }
         } else if apart < 0.0 {
