@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::check::{LimitArgs, LintArgs};
+
 /// Where the scene comes from.
-#[derive(clap::Args, Clone, Debug)]
+#[derive(clap::Args, Clone, Debug, Default)]
 pub struct SceneArgs {
     /// The script, or `-` for standard input
     pub scene: PathBuf,
@@ -15,6 +17,12 @@ pub struct SceneArgs {
     /// Lets the script read files below DIR too, besides its own folder
     #[arg(long, value_name = "DIR")]
     pub allow_read: Vec<PathBuf>,
+
+    #[command(flatten)]
+    pub lints: LintArgs,
+
+    #[command(flatten)]
+    pub limits: LimitArgs,
 }
 
 /// `name=value`

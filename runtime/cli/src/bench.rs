@@ -76,7 +76,7 @@ pub fn run(args: &Args) -> Exit {
 
 fn measure(scene: &std::path::Path, args: &Args) -> Result<Line, Exit> {
     let start = Instant::now();
-    let arguments = SceneArgs { scene: scene.to_owned(), set: Vec::new(), allow_read: Vec::new() };
+    let arguments = SceneArgs { scene: scene.to_owned(), ..SceneArgs::default() };
     let compiled = compile(&arguments, true)?;
     let compile_seconds = start.elapsed().as_secs_f64();
     bug::stage("bench");

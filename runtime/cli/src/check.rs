@@ -49,7 +49,7 @@ fn lint(name: &str) -> Result<String, String> {
 }
 
 /// What a script may use. The defaults are generous; exceeding one is a finding.
-#[derive(clap::Args, Clone, Debug)]
+#[derive(clap::Args, Clone, Debug, Default)]
 pub struct LimitArgs {
     /// Steps of evaluation
     #[arg(long, value_name = "N")]

@@ -39,6 +39,8 @@ fn with(args: &SceneArgs, quiet: bool, stages: Stages) -> Result<Scene, Exit> {
     let shown = if args.scene.as_os_str() == "-" { "<stdin>".into() } else { args.scene.display().to_string() };
     let mut options = Options::default();
     options.settings.clone_from(&args.set);
+    options.lint_levels = args.lints.levels();
+    args.limits.apply(&mut options);
     let text = match read_script(&args.scene) {
         Ok(text) => text,
         Err(error) => return Err(unreadable(&shown, &error, &options)),

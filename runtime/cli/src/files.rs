@@ -12,6 +12,9 @@ use arsc_driver::{LoadError, Loader};
 /// Largest script or table, bytes. The compiler has its own, smaller limit.
 const LARGEST_TEXT: u64 = 256 << 20;
 
+/// Names of a folder that are looked at for one to suggest.
+const LONGEST_LIST: usize = 1_000;
+
 /// The folders that a script may read.
 pub struct ScriptFolder {
     root: PathBuf,
@@ -51,6 +54,15 @@ impl Loader for ScriptFolder {
             return Err(LoadError::Other("not a file".into()));
         }
         std::fs::File::open(real).map(drop).map_err(load_error)
+    }
+
+    fn list(&self, folder: &str) -> Vec<String> {
+        let folder = if folder.is_empty() { "." } else { folder };
+        let entries = self.resolve(folder).ok().and_then(|real| std::fs::read_dir(real).ok());
+        let names = entries.into_iter().flatten().flatten().take(LONGEST_LIST);
+        let mut names: Vec<String> = names.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+        names.sort();
+        names
     }
 }
 
