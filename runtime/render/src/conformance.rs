@@ -3,6 +3,7 @@
 //! Random numbers are fixed by seed. Chi-square tests use 200 000 samples and a threshold at a false-alarm rate of 1e-5 per
 //! test. Means of n samples are compared within five standard errors (false-alarm rate 6e-7).
 
+mod area_lights;
 mod bsdfs;
 mod lights;
 
