@@ -107,6 +107,22 @@ fn unbounded_solids_are_hit_and_open() {
 }
 
 #[test]
+fn solids_without_bounded_leaves_are_hit() {
+    let half = leaf(Shape::HalfSpace, DVec3::Z, 0);
+    let pole = leaf(Shape::InfiniteCylinder { radius: 1.0 }, DVec3::X * 5.0, 1);
+    let both = Csg::Union(vec![Csg::Leaf(0), Csg::Leaf(1)]);
+    for (tree, parts) in [(Csg::Leaf(0), [Some(0), None]), (Csg::Leaf(1), [None, Some(1)]), (both, [Some(0), Some(1)])]
+    {
+        for scene in scenes(solid(tree, vec![half.clone(), pole.clone()])) {
+            let down = scene.intersect(&Ray::new(DVec3::new(0.0, 0.0, 4.0), DVec3::NEG_Z));
+            let across = scene.intersect(&Ray::new(DVec3::new(0.0, 0.0, 4.0), DVec3::X));
+            assert_eq!([down, across].map(|hit| hit.map(|hit| hit.part.0)), parts);
+            assert!(down.is_none_or(|hit| hit.t == 3.0) && across.is_none_or(|hit| (hit.t - 4.0).abs() < 1e-12));
+        }
+    }
+}
+
+#[test]
 fn surfaces_and_mirrored_surfaces_keep_their_side() {
     let mirrored = DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)) * DAffine3::from_translation(DVec3::Z);
     let quad = SurfaceShape::Quad([DVec3::ZERO, DVec3::X, DVec3::ONE.with_z(0.0), DVec3::Y]);
