@@ -22,8 +22,8 @@ enum Role {
 pub fn check_normal_form(ir: &Ir) -> Result<(), String> {
     let reachable = ir.reachable();
     let mut roles: Vec<Role> = Vec::with_capacity(ir.nodes.len());
-    for id in 0..ir.nodes.len() {
-        if !reachable[id] {
+    for (id, is_reachable) in reachable.iter().enumerate() {
+        if !is_reachable {
             return Err(format!("%{id} is not used"));
         }
         let role = role(ir, NodeId(id as u32), &roles).map_err(|message| format!("%{id} {message}"))?;
