@@ -1,7 +1,8 @@
 //! Geometry of the IR's normal form → [`SceneGeometry`].
 //!
 //! Order is kept: where faces coincide the earlier part shows, and the numbers of solids and materials that `arsc probe`
-//! prints are those of the normal form. A node that several parents share is copied into each solid; what is placed by
+//! prints are those of the normal form. Only emissive surfaces go behind the other surfaces: the later one of two that
+//! coincide shows, and so does a lamp in the plane of a ceiling, wherever it was written. A node that several parents share is copied into each solid; what is placed by
 //! a `Transform` becomes an instance of one shared solid.
 
 use std::collections::HashMap;
@@ -20,7 +21,12 @@ pub fn lower(ir: &Ir, host: &dyn Host) -> Result<SceneGeometry, AssemblyError> {
     for &member in members(ir)? {
         lowering.member(member)?;
     }
-    Ok(lowering.geometry)
+    let mut geometry = lowering.geometry;
+    let emits = |surface: &Surface| {
+        ir.materials.get(surface.material.0 as usize).is_some_and(|material| material.emitter.is_some())
+    };
+    geometry.surfaces.sort_by_key(emits);
+    Ok(geometry)
 }
 
 /// The independent parts of the scene.

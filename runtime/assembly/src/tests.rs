@@ -209,6 +209,19 @@ fn lights_and_bounds_are_told() {
 }
 
 #[test]
+fn a_lamp_goes_behind_the_ceiling_in_whose_plane_it_lies() {
+    let mut b = Builder::new();
+    let ceiling = b.surface(Surface::Rectangle { width: 9.0, depth: 9.0 }, DAffine3::IDENTITY, NOWHERE);
+    let lamp = b.surface(Surface::Rectangle { width: 2.0, depth: 3.0 }, DAffine3::IDENTITY, NOWHERE);
+    let emitter = Some(b.emitter(Emitter { radiance: Spectrum::Constant(1.0), two_sided: false }));
+    let lamp = b.attributes(Attributes { emitter, ..Attributes::default() }, Precedence::Inner, lamp, NOWHERE);
+    let ir = scene(b, vec![lamp, ceiling], vec![]);
+    let surfaces = crate::geometry::lower(&ir, &Memory::default()).unwrap().surfaces;
+    let emits = |i: usize| ir.materials[surfaces[i].material.0 as usize].emitter.is_some();
+    assert!(surfaces.len() == 2 && !emits(0) && emits(1));
+}
+
+#[test]
 fn meshes_come_through_the_host() {
     let mesh = |path: &str| {
         let mut b = Builder::new();
