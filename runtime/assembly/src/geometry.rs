@@ -1,9 +1,10 @@
 //! Geometry of the IR's normal form → [`SceneGeometry`].
 //!
-//! Order is kept: where faces coincide the earlier part shows, and the numbers of solids and materials that `arsc probe`
-//! prints are those of the normal form. Only emissive surfaces go behind the other surfaces: the later one of two that
-//! coincide shows, and so does a lamp in the plane of a ceiling, wherever it was written. A node that several parents share is copied into each solid; what is placed by
-//! a `Transform` becomes an instance of one shared solid.
+//! Order is kept: where the faces of solids coincide the earlier part shows, and the numbers of solids and materials
+//! that `arsc probe` prints are those of the normal form. Only emissive surfaces go behind the other surfaces: of two
+//! that coincide the later one shows, and so does a lamp in the plane of a ceiling, wherever it was written. A node that
+//! several parents share is copied into each solid; what is placed by a `Transform` becomes an instance of one shared
+//! solid.
 
 use std::collections::HashMap;
 use std::sync::Arc;
