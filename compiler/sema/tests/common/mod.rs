@@ -68,6 +68,26 @@ impl Session {
         self.load(name, &text, true)
     }
 
+    /// As [`Session::analyse`] for a text that may have slips; those of imports are not followed: then `None`.
+    pub fn analyse_any(&mut self, text: &str, options: Options) -> Option<Analysed> {
+        let source = self.sources.add(SourceFile::new("scene.arsl", text));
+        let parsed = arsc_syntax::parse(source, text);
+        let mut imports = Vec::new();
+        for item in &parsed.module.items {
+            if let ItemKind::Import(import) = &item.kind {
+                let ImportPath::Std { segments, .. } = &import.path else { return None };
+                let name = segments.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(".");
+                let known = std::fs::exists(format!("{ROOT}/stdlib/{}.arsl", name.replace('.', "/")));
+                imports.push(known.is_ok_and(|known| known).then(|| self.module(&name)));
+            }
+        }
+        let options = Options { check_only: !parsed.diagnostics.is_empty() || imports.contains(&None), ..options };
+        let check_only = options.check_only;
+        self.modules.push(Module { source, name: "scene.arsl".into(), is_std: false, ast: parsed.module, imports });
+        let analysed = analyse(&self.modules, &Files, &options);
+        (!check_only).then_some(analysed)
+    }
+
     /// A module of the standard library by itself.
     pub fn analyse_std(&mut self, name: &str, text: &str) -> Analysed {
         self.load(name, text, true);
