@@ -143,7 +143,7 @@ pub enum Code {
         span: Span,
     },
     /// Adds a value, or the values of nested lists, to what the scene or action block collects.
-    Emit(Box<Code>),
+    Emit(Box<Code>, Span),
     /// Stands where an error was reported; never evaluated.
     Error,
 }

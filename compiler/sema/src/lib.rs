@@ -66,7 +66,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Limits {
-        Limits { steps: 100_000_000, recursion: 200, nodes: 4_000_000, elements: 20_000_000 }
+        Limits { steps: 100_000_000, recursion: 200, nodes: 2_000_000, elements: 10_000_000 }
     }
 }
 

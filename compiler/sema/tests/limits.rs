@@ -47,6 +47,32 @@ fn memory_is_bounded() {
     assert_eq!(codes("scene { for i in 0..20_000 { sphere() |> translate(x: i) } }", small()), ["E0204"]);
 }
 
+/// Sharing makes small what would be huge if written out; whoever writes it out counts.
+#[test]
+fn doubling_is_bounded() {
+    let chain = |first: &str, next: fn(usize) -> String, last: &str| {
+        let steps: Vec<String> = (1..60).map(next).collect();
+        codes(&format!("scene {{ let x0 = {first}; {}; {last} }}", steps.join("; ")), small())
+    };
+    let tuples = |i: usize| format!("let x{i} = (x{}, x{})", i - 1, i - 1);
+    let lists = |i: usize| format!("let x{i} = [x{}, x{}]", i - 1, i - 1);
+    let zips = |i: usize| format!("let x{i} = zip(x{}, x{})", i - 1, i - 1);
+    let sums = |i: usize| format!("let x{i} = fn() => (x{}, x{})", i - 1, i - 1);
+    assert_eq!(codes_of_types(&chain("1", tuples, "sphere()")), ["E0204"]);
+    assert_eq!(codes_of_types(&chain("[1]", zips, "sphere()")), ["E0204"]);
+    assert_eq!(codes_of_types(&chain("1", sums, "sphere()")), ["E0204"]);
+    assert_eq!(chain("sphere()", lists, "x59"), ["E0204"]);
+    assert_eq!(chain("sphere()", lists, "union(x59)"), ["E0204"]);
+    assert_eq!(chain("sphere()", lists, "x59 |> translate(x: 1)"), ["E0204"]);
+    assert_eq!(chain("1", lists, "if x59 == x59 { sphere() }"), ["E0204"]);
+    assert_eq!(chain("1", lists, "sphere(radius: if str(x59) == \"\" { 1 } else { 2 })"), ["E0204"]);
+}
+
+/// Without the lints.
+fn codes_of_types(codes: &[&'static str]) -> Vec<&'static str> {
+    codes.iter().copied().filter(|code| !code.starts_with('W')).collect()
+}
+
 #[test]
 fn defaults_are_generous() {
     let text = "scene { for p in random_points(1, 20_000) { sphere(0.01) |> translate(by: p) } }";

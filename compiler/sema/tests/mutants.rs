@@ -18,7 +18,7 @@ fn tokens(text: &str) -> Vec<String> {
                 token.push(next);
             }
         } else if c == '"' {
-            while let Some(next) = chars.next() {
+            for next in chars.by_ref() {
                 token.push(next);
                 if next == '"' {
                     break;

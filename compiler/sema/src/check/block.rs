@@ -112,7 +112,7 @@ impl Checker<'_> {
             _ => {
                 let value = self.expr(expr, None);
                 self.check_collected(&value.ty, what, expr.span);
-                Code::Emit(Box::new(value.code))
+                Code::Emit(Box::new(value.code), expr.span)
             }
         }
     }

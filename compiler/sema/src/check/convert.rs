@@ -10,6 +10,9 @@ use super::{Checker, Typed};
 use crate::code::{Code, Coercion};
 use crate::types::{Class, SpectrumKind, Type};
 
+/// Parts of one type, its own parts' included.
+const MAX_TYPE_PARTS: usize = 1_000;
+
 /// How a value becomes one of another type.
 pub(super) enum Conversion {
     Same,
@@ -48,6 +51,36 @@ impl Checker<'_> {
             part.clone()
         });
         unknown
+    }
+
+    /// The type, unless it has so many parts that checking would take for ever: `let b = (a, a)`, again and again.
+    pub(super) fn bounded(&mut self, ty: Type, span: Span) -> Type {
+        let mut fuel = MAX_TYPE_PARTS;
+        self.count_parts(&ty, &mut fuel);
+        if fuel > 0 {
+            return ty;
+        }
+        // Once is enough: what grew so large goes on growing below.
+        if !self.diagnostics.iter().any(|old| old.code == codes::LIMIT) {
+            let message = format!("the type of this has more than {MAX_TYPE_PARTS} parts");
+            self.error(codes::LIMIT, message, span, "too large a type");
+        }
+        Type::Error
+    }
+
+    fn count_parts(&self, ty: &Type, fuel: &mut usize) {
+        *fuel = fuel.saturating_sub(1);
+        if *fuel > 0 {
+            match self.shallow(ty) {
+                Type::List(element) => self.count_parts(&element, fuel),
+                Type::Tuple(parts) => parts.iter().for_each(|part| self.count_parts(part, fuel)),
+                Type::Record(fields) => fields.iter().for_each(|(_, part)| self.count_parts(part, fuel)),
+                Type::Fn(function) => {
+                    function.params.iter().chain([&function.result]).for_each(|part| self.count_parts(part, fuel));
+                }
+                _ => {}
+            }
+        }
     }
 
     /// Gives a variable a type; `None` if its class forbids.

@@ -19,6 +19,16 @@ impl Checker<'_> {
         if let Some(literal) = self.literal(expr) {
             return literal;
         }
+        let found = self.compound(expr, hint);
+        match found.ty {
+            Type::List(_) | Type::Tuple(_) | Type::Record(_) | Type::Fn(_) => {
+                Typed::new(found.code, self.bounded(found.ty, expr.span))
+            }
+            _ => found,
+        }
+    }
+
+    fn compound(&mut self, expr: &ast::Expr, hint: Option<&Type>) -> Typed {
         match &expr.kind {
             ExprKind::Name(name) => self.name(name, hint),
             ExprKind::Tuple(elements) => self.tuple(elements, hint),

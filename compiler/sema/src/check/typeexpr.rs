@@ -49,6 +49,11 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn type_expr(&mut self, written: &ast::TypeExpr) -> Type {
+        let ty = self.written_type(written);
+        self.bounded(ty, written.span)
+    }
+
+    fn written_type(&mut self, written: &ast::TypeExpr) -> Type {
         match &written.kind {
             TypeKind::Name { name, args } => self.named_type(name, args, written.span),
             TypeKind::Tuple(parts) => Type::tuple(parts.iter().map(|part| self.type_expr(part)).collect::<Vec<_>>()),

@@ -106,9 +106,10 @@ impl Machine<'_> {
                 let args = self.eval_all(args)?;
                 self.call_value(&callee, args, *span)
             }
-            Code::Emit(value) => {
+            Code::Emit(value, span) => {
                 let value = self.eval(value)?;
-                self.collect(value);
+                self.step(*span)?;
+                self.collect(value, *span)?;
                 Ok(Value::unit())
             }
             Code::Error => panic!("a program with errors is evaluated"),

@@ -9,10 +9,16 @@ use crate::code::{Entry, GlobalId};
 use crate::value::Value;
 
 impl Machine<'_> {
-    pub(super) fn collect(&mut self, value: Value) {
+    pub(super) fn collect(&mut self, value: Value, span: Span) -> Eval<()> {
         match value {
-            Value::List(list) => list.iter().for_each(|element| self.collect(element.clone())),
-            other => self.collected.push(other),
+            Value::List(list) => {
+                self.spend_elements(list.len(), span)?;
+                list.iter().try_for_each(|element| self.collect(element.clone(), span))
+            }
+            other => {
+                self.collected.push(other);
+                Ok(())
+            }
         }
     }
 

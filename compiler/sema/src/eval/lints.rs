@@ -14,6 +14,12 @@ const ABOVE_ONE: f64 = 1.0 + 1e-6;
 
 /// Extremes over the rendered range, every 5 nm.
 fn extremes(spectrum: &Spectrum) -> (f64, f64) {
+    match spectrum {
+        Spectrum::Constant(value) => return (*value, *value),
+        // Within 0 and 1 by its formula.
+        Spectrum::Sigmoid { .. } => return (0.0, 1.0),
+        _ => {}
+    }
     let mut extremes = (f64::INFINITY, f64::NEG_INFINITY);
     let mut lambda_nm = LAMBDA_MIN_NM;
     while lambda_nm <= LAMBDA_MAX_NM {

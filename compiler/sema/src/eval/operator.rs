@@ -113,8 +113,8 @@ impl Machine<'_> {
             DivFloat => number(a.as_float() / b.as_float(), span),
             RemFloat => number(a.as_float().rem_euclid(b.as_float()), span),
             PowFloat => number(a.as_float().powf(b.as_float()), span),
-            Eq => Ok(Value::Bool(equal(a, b))),
-            Ne => Ok(Value::Bool(!equal(a, b))),
+            Eq => Ok(Value::Bool(self.equal(a, b, span)?)),
+            Ne => Ok(Value::Bool(!self.equal(a, b, span)?)),
             Lt | Le | Gt | Ge => Ok(Value::Bool(ordered(op, a, b))),
             Union | Intersection | Difference => self.boolean(op, a, b, span),
             _ => self.compound(op, a, b, span),
@@ -159,9 +159,9 @@ impl Machine<'_> {
 
     fn boolean(&mut self, op: Binary, a: &Value, b: &Value, span: Span) -> Eval {
         let mut left = Vec::new();
-        flatten_nodes(a, &mut left);
+        flatten_nodes(self, a, &mut left, span)?;
         let mut right = Vec::new();
-        flatten_nodes(b, &mut right);
+        flatten_nodes(self, b, &mut right, span)?;
         let (kind, operands): (fn(Vec<_>) -> NodeKind, Vec<_>) = match op {
             Binary::Union => (NodeKind::Union, [left, right].concat()),
             Binary::Intersection => (NodeKind::Intersection, [left, right].concat()),
@@ -210,16 +210,32 @@ fn ordered(op: Binary, a: &Value, b: &Value) -> bool {
     }
 }
 
-pub(super) fn equal(a: &Value, b: &Value) -> bool {
-    match (a, b) {
-        (Value::Bool(a), Value::Bool(b)) => a == b,
-        (Value::Int(a), Value::Int(b)) => a == b,
-        (Value::Float(a), Value::Float(b)) => a == b,
-        (Value::Vec2(a), Value::Vec2(b)) => a == b,
-        (Value::Vec3(a), Value::Vec3(b)) => a == b,
-        (Value::Str(a), Value::Str(b)) => a == b,
-        (Value::Tuple(a), Value::Tuple(b)) => a.len() == b.len() && a.iter().zip(b.iter()).all(|(a, b)| equal(a, b)),
-        (Value::List(a), Value::List(b)) => a.len() == b.len() && a.iter().zip(b.iter()).all(|(a, b)| equal(a, b)),
-        _ => false,
+impl Machine<'_> {
+    /// Values that are shared stand for as many as they would be if written out: comparing them counts as steps.
+    pub(super) fn equal(&mut self, a: &Value, b: &Value, span: Span) -> Eval<bool> {
+        Ok(match (a, b) {
+            (Value::Bool(a), Value::Bool(b)) => a == b,
+            (Value::Int(a), Value::Int(b)) => a == b,
+            (Value::Float(a), Value::Float(b)) => a == b,
+            (Value::Vec2(a), Value::Vec2(b)) => a == b,
+            (Value::Vec3(a), Value::Vec3(b)) => a == b,
+            (Value::Str(a), Value::Str(b)) => a == b,
+            (Value::Tuple(a), Value::Tuple(b)) => self.all_equal(a, b, span)?,
+            (Value::List(a), Value::List(b)) => self.all_equal(a, b, span)?,
+            _ => false,
+        })
+    }
+
+    fn all_equal(&mut self, a: &[Value], b: &[Value], span: Span) -> Eval<bool> {
+        if a.len() != b.len() {
+            return Ok(false);
+        }
+        for (a, b) in a.iter().zip(b) {
+            self.step(span)?;
+            if !self.equal(a, b, span)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 }

@@ -4,7 +4,6 @@ use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Diagnostic, Span};
 
 use super::call::shown;
-use super::operator::equal;
 use super::{Eval, Machine};
 use crate::code::{Allowed, Entry, GlobalId};
 use crate::types::Type;
@@ -49,8 +48,10 @@ impl Machine<'_> {
             }
             Allowed::OneOf(entry) => {
                 let list = self.run_entry(entry)?;
-                if list.as_list().iter().any(|one| equal(one, &value)) {
-                    return Ok(());
+                for one in list.as_list().iter() {
+                    if self.equal(one, &value, span)? {
+                        return Ok(());
+                    }
                 }
                 let all: Vec<String> = list.as_list().iter().map(|one| shown(one, &Type::Float)).collect();
                 format!("one of {}", all.join(", "))

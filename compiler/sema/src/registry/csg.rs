@@ -1,5 +1,6 @@
 //! Boolean operations as functions; the operators `|`, `&` and `-` do the same.
 
+use arsc_diagnostics::Span;
 use arsc_diagnostics::codes::sema as codes;
 use arsc_ir::{NodeId, NodeKind};
 
@@ -24,7 +25,7 @@ pub fn builtins() -> Vec<Builtin> {
             .variadic(solids("cut", "solids or lists of solids"))
             .runs(Solid, |m, args, site| {
                 let mut cut = Vec::new();
-                flatten(&args[1], &mut cut);
+                flatten(m, &args[1], &mut cut, site.span)?;
                 if cut.is_empty() {
                     return Ok(args[0].clone());
                 }
@@ -35,16 +36,22 @@ pub fn builtins() -> Vec<Builtin> {
 }
 
 /// Appends the nodes of nested lists, in order.
-pub fn flatten(value: &Value, nodes: &mut Vec<NodeId>) {
+pub fn flatten(m: &mut Machine<'_>, value: &Value, nodes: &mut Vec<NodeId>, span: Span) -> Eval<()> {
     match value {
-        Value::List(list) => list.iter().for_each(|element| flatten(element, nodes)),
-        other => nodes.push(other.as_node()),
+        Value::List(list) => {
+            m.spend_elements(list.len(), span)?;
+            list.iter().try_for_each(|element| flatten(m, element, nodes, span))
+        }
+        other => {
+            nodes.push(other.as_node());
+            Ok(())
+        }
     }
 }
 
 fn boolean(m: &mut Machine<'_>, args: &[Value], site: &Site, kind: fn(Vec<NodeId>) -> NodeKind) -> Eval {
     let mut operands = Vec::new();
-    args.iter().for_each(|arg| flatten(arg, &mut operands));
+    args.iter().try_for_each(|arg| flatten(m, arg, &mut operands, site.span))?;
     match operands.len() {
         0 => Err(Box::new(site.fail(codes::EMPTY_LIST, "a Boolean operation needs at least one operand"))),
         1 => Ok(Value::Node(operands[0])),

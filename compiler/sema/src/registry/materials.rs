@@ -60,7 +60,7 @@ fn attaching() -> Vec<Builtin> {
 
 fn attach(m: &mut Machine<'_>, args: &[Value], precedence: Precedence, site: &Site) -> Eval {
     let mut bundle = Attributes::default();
-    merge(&args[1], &mut bundle, site)?;
+    merge(m, &args[1], &mut bundle, site)?;
     if bundle == Attributes::default() {
         return Ok(args[0].clone());
     }
@@ -68,9 +68,10 @@ fn attach(m: &mut Machine<'_>, args: &[Value], precedence: Precedence, site: &Si
 }
 
 /// Collects nested lists of attributes into one bundle.
-fn merge(value: &Value, bundle: &mut Attributes, site: &Site) -> Eval<()> {
+fn merge(m: &mut Machine<'_>, value: &Value, bundle: &mut Attributes, site: &Site) -> Eval<()> {
     if let Value::List(list) = value {
-        return list.iter().try_for_each(|element| merge(element, bundle, site));
+        m.spend_elements(list.len(), site.span)?;
+        return list.iter().try_for_each(|element| merge(m, element, bundle, site));
     }
     let new = value.as_attributes();
     let twice = |what| {

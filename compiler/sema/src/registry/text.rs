@@ -7,6 +7,8 @@ use std::fmt::Write;
 
 use glam::DVec3;
 
+use arsc_diagnostics::codes::sema as codes;
+
 use super::{Builtin, Param};
 use crate::code::Site;
 use crate::eval::{Eval, Machine};
@@ -31,6 +33,10 @@ pub fn builtins() -> Vec<Builtin> {
             .runs(Str, |m, args, site| {
                 let mut text = String::new();
                 write_value(&args[0], &mut text);
+                if text.len() > MAX_TEXT {
+                    let message = format!("the text of this value has more than {MAX_TEXT} characters");
+                    return Err(site.fail_arg(0, codes::LIMIT, message, "too long"));
+                }
                 m.spend_elements(text.len() / 16, site.span)?;
                 Ok(Value::str(text))
             }),
@@ -49,7 +55,14 @@ pub fn builtins() -> Vec<Builtin> {
     ]
 }
 
+/// Bytes of a value's text.
+const MAX_TEXT: usize = 1 << 20;
+
+/// Stops soon after the text has become too long.
 fn write_value(value: &Value, text: &mut String) {
+    if text.len() > MAX_TEXT {
+        return;
+    }
     let mut parts = |open: char, values: &[Value], close: char| {
         text.push(open);
         for (i, value) in values.iter().enumerate() {
@@ -120,8 +133,7 @@ fn random_ints(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
     let (mut pcg, n) = start(m, args, site)?;
     let (low, high) = (args[2].as_int(), args[3].as_int());
     if low >= high {
-        let code = arsc_diagnostics::codes::sema::OUT_OF_RANGE;
-        return Err(site.fail_arg(3, code, "`high` must be above `low`", "not above `low`"));
+        return Err(site.fail_arg(3, codes::OUT_OF_RANGE, "`high` must be above `low`", "not above `low`"));
     }
     let count = (i128::from(high) - i128::from(low)) as f64;
     let pick = |pcg: &mut Pcg32| i128::from(low) + (pcg.float() * count) as i128;
