@@ -123,6 +123,27 @@ fn solids_without_bounded_leaves_are_hit() {
 }
 
 #[test]
+fn instances_may_be_empty_or_unbounded() {
+    let nothing = Csg::Intersection(vec![Csg::Leaf(0), Csg::Leaf(1)]);
+    let empty = Solid { tree: nothing, leaves: vec![sphere(DVec3::ZERO, 1.0, 0), sphere(DVec3::X * 3.0, 1.0, 0)] };
+    let half = Solid { tree: Csg::Leaf(0), leaves: vec![leaf(Shape::HalfSpace, DVec3::ZERO, 0)] };
+    let place = |solid: &Solid| Instance {
+        solid: Arc::new(solid.clone()),
+        world_from_object: DAffine3::from_translation(DVec3::Z) * DAffine3::from_scale(DVec3::splat(3.0)),
+    };
+    let geometry = SceneGeometry { instances: vec![place(&empty), place(&half)], ..SceneGeometry::default() };
+    for scene in scenes(geometry) {
+        let ray = Ray::new(DVec3::new(0.2, 0.0, 5.0), DVec3::NEG_Z);
+        let hit = scene.intersect(&ray).unwrap();
+        assert!((hit.t - 4.0).abs() < 1e-14 && close(hit.ng, DVec3::Z) && hit.part == PartId(2));
+        let intervals = scene.intervals(&ray);
+        assert!(intervals.len() == 1 && intervals[0].solid == 1 && intervals[0].t_exit.is_infinite());
+        let within = scene.intervals(&Ray::new(DVec3::NEG_Z, DVec3::X));
+        assert!(within.len() == 1 && within[0].enter.is_none() && within[0].exit.is_none());
+    }
+}
+
+#[test]
 fn surfaces_and_mirrored_surfaces_keep_their_side() {
     let mirrored = DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)) * DAffine3::from_translation(DVec3::Z);
     let quad = SurfaceShape::Quad([DVec3::ZERO, DVec3::X, DVec3::ONE.with_z(0.0), DVec3::Y]);
