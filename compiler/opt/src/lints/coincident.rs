@@ -25,6 +25,8 @@ const FACES: usize = 6;
 const POINTS: usize = 24;
 /// Leaves looked at for all membership tests.
 const BUDGET: u64 = 3_000_000;
+/// Pairs of faces with overlapping boxes looked at.
+const PAIRS: usize = 400_000;
 /// Findings at most.
 const FINDINGS: usize = 20;
 
@@ -45,6 +47,7 @@ struct Search<'a> {
     /// Boxes of the solid objects.
     boxes: Vec<Aabb>,
     budget: u64,
+    pairs: usize,
     reported: FxHashSet<(Span, Span)>,
 }
 
@@ -60,6 +63,7 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
         sizes: survey.ir.expanded_leaves(),
         boxes,
         budget: BUDGET,
+        pairs: PAIRS,
         reported: FxHashSet::default(),
     };
     let entries = search.entries();
@@ -70,7 +74,7 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
         if unlike && bucket.iter().any(|entry| entry.owner != bucket[0].owner) {
             search.bucket(bucket, &cover, findings);
         }
-        if search.budget == 0 || search.reported.len() >= FINDINGS {
+        if search.budget == 0 || search.pairs == 0 || search.reported.len() >= FINDINGS {
             return;
         }
     }
@@ -122,13 +126,16 @@ impl Search<'_> {
         let tree = BoxTree::new(&boxes);
         for i in 0..bucket.len() {
             let mut candidates = Vec::new();
+            let mut pairs = self.pairs;
             tree.overlapping(&boxes[i], |j| {
+                pairs = pairs.saturating_sub(1);
                 if j > i && bucket[j].owner != bucket[i].owner && self.material(&bucket[j]) != self.material(&bucket[i])
                 {
                     candidates.push(j);
                 }
-                candidates.len() < 16
+                candidates.len() < 16 && pairs > 0
             });
+            self.pairs = pairs;
             candidates.sort_unstable();
             for j in candidates {
                 let spans = [bucket[i], bucket[j]].map(|entry| self.survey.origin(NodeId(entry.leaf)));
