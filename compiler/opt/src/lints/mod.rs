@@ -47,9 +47,11 @@ pub(crate) fn lint(ir: &Ir, options: &Options) -> Vec<Diagnostic> {
     findings
 }
 
-/// The scene is to be rendered by this script.
+/// The script renders the scene and writes a picture.
 fn is_rendered(ir: &Ir) -> bool {
-    ir.actions.iter().any(|at| matches!(at.action, Action::PathTrace { .. }))
+    let any = |wanted: fn(&Action) -> bool| ir.actions.iter().any(|at| wanted(&at.action));
+    any(|action| matches!(action, Action::PathTrace { .. }))
+        && any(|action| matches!(action, Action::WriteExr { .. } | Action::WritePng { .. }))
 }
 
 /// Counts by place in the script: how many nodes it made, and how many of them were found.
