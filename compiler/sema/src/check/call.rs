@@ -121,7 +121,7 @@ impl Checker<'_> {
                 let ty = signature.result.clone().unwrap_or(Type::Error);
                 Typed::new(Code::CallFn { function: id, args, span }, ty)
             }
-            None => Typed::new(Code::Error, signature.result.clone().unwrap_or(Type::Error)),
+            None => Typed::error(),
         }
     }
 
@@ -129,7 +129,7 @@ impl Checker<'_> {
         let ty = signature.result.clone().unwrap_or(Type::Error);
         match self.signature_args(signature, given, span) {
             Some(args) => Typed::new(Code::CallValue { callee: Box::new(callee), args, span }, ty),
-            None => Typed::new(Code::Error, ty),
+            None => Typed::error(),
         }
     }
 
@@ -202,8 +202,7 @@ impl Checker<'_> {
             })
             .collect();
         let Some(matched) = self.match_args(&function, &slots, builtin.variadic, given, span) else {
-            self.call_unknown(given);
-            return Typed::new(Code::Error, known_result(builtin));
+            return self.call_unknown(given);
         };
         self.typed_call(id, builtin, &matched, span)
     }
@@ -300,9 +299,4 @@ impl Checker<'_> {
 
 fn is_function(ty: &Type) -> bool {
     matches!(ty, Type::Fn(_))
-}
-
-/// The result of a call whose arguments were wrong, where it does not depend on them.
-fn known_result(builtin: &Builtin) -> Type {
-    if builtin.bounds.is_empty() { builtin.result.clone() } else { Type::Error }
 }

@@ -314,6 +314,7 @@ fn advice(found: &Type, wanted: &Type) -> Option<String> {
         (Spectrum(_), Spectrum(_)) => {
             "kinds of spectra do not mix: reflectance, emission, refractive index, extinction"
         }
+        (Fn(_), Fn(_)) => return None,
         (Fn(_), _) => "call it: `f(…)`",
         (ty, _) if ty.is_unit() => "an `if` without `else`, and a block that ends in a definition, have no value",
         (found, List(element)) if found == &**element => "write a list: `[x]`",

@@ -97,18 +97,17 @@ impl Machine<'_> {
         self.calls += 1;
         let frame = self.enter(function.slots, closure);
         let std_frame = self.enter_std(function.is_std, span);
-        let given = args.len();
         for (slot, arg) in args.into_iter().enumerate() {
             self.stack[self.base + slot] = arg;
         }
-        let result = self.fill_defaults(id, given).and_then(|()| self.eval(&function.body));
+        let result = self.fill_defaults(id).and_then(|()| self.eval(&function.body));
         self.leave_std(std_frame);
         self.leave(frame);
         self.calls -= 1;
         result.map_err(|failure| with_call(failure, &function.name, span))
     }
 
-    fn fill_defaults(&mut self, id: FnId, _given: usize) -> Eval<()> {
+    fn fill_defaults(&mut self, id: FnId) -> Eval<()> {
         let program = self.program;
         for (slot, default) in program.functions[id.0 as usize].defaults.iter().enumerate() {
             if let Some(default) = default

@@ -5,9 +5,11 @@ use std::sync::Arc;
 use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Diagnostic, Span};
 use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
 
 use super::{Eval, GlobalState, MAX_DEPTH, Machine, limit};
-use crate::code::{Arm, Code, Coercion, Entry, For, GlobalId};
+use crate::code::{Arm, Code, Coercion, Entry, For, GlobalId, Site};
+use crate::registry::BuiltinId;
 use crate::types::SpectrumKind;
 use crate::value::{Closure, Value};
 
@@ -96,11 +98,7 @@ impl Machine<'_> {
                 let args = self.eval_all(args)?;
                 self.call_function(*function, args, None, *span)
             }
-            Code::CallBuiltin { builtin, args, site } => {
-                self.step(site.span)?;
-                let args = self.eval_all(args)?;
-                self.call_builtin(*builtin, &args, site)
-            }
+            Code::CallBuiltin { builtin, args, site } => self.eval_builtin_call(*builtin, args, site),
             Code::CallValue { callee, args, span } => {
                 let callee = self.eval(callee)?;
                 let args = self.eval_all(args)?;
@@ -120,6 +118,18 @@ impl Machine<'_> {
     fn eval_all(&mut self, codes: &[Code]) -> Eval<Vec<Value>> {
         self.elements += codes.len() as u64 / 4;
         codes.iter().map(|code| self.eval(code)).collect()
+    }
+
+    /// Apart, so that its buffer of arguments weighs on the native stack of builtin calls alone.
+    #[inline(never)]
+    fn eval_builtin_call(&mut self, builtin: BuiltinId, args: &[Code], site: &Site) -> Eval {
+        self.step(site.span)?;
+        let mut values: SmallVec<[Value; 6]> = SmallVec::new();
+        for code in args {
+            let value = self.eval(code)?;
+            values.push(value);
+        }
+        self.call_builtin(builtin, &values, site)
     }
 
     fn eval_field(&mut self, base: &Code, i: u32) -> Eval {
