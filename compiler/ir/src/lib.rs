@@ -8,6 +8,7 @@
 //! Provenance: each node keeps the span of the expression that made it.
 
 mod action;
+mod args;
 mod builder;
 mod camera;
 mod graph;

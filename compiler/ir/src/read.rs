@@ -7,9 +7,10 @@ use std::fmt;
 use std::sync::Arc;
 
 use arsc_diagnostics::{SourceId, Span};
-use arsc_geometry::{DAffine3, DVec3, Shape};
+use arsc_geometry::{DVec3, Shape};
 use arsc_spectral::Spectrum;
 
+use crate::args::{Args, float, float_list, floats, index, integer};
 use crate::term::{Cursor, Fault, Term, TermKind};
 use crate::{
     Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Emitter, Environment, Exposure, Filter, Ir, Leaf, Light,
@@ -135,135 +136,6 @@ fn span(cursor: &mut Cursor) -> Result<Span, Fault> {
     Ok(Span { source, start, end })
 }
 
-/// The arguments of a call, taken one by one.
-struct Args<'a> {
-    name: &'a str,
-    offset: usize,
-    rest: std::collections::VecDeque<(Option<&'a str>, Term<'a>)>,
-}
-
-impl<'a> Args<'a> {
-    fn new(term: Term<'a>) -> Result<Args<'a>, Fault> {
-        match term.kind {
-            TermKind::Call(name, arguments) => Ok(Args { name, offset: term.offset, rest: arguments.into() }),
-            _ => Err((term.offset, "expected `name(…)`".to_owned())),
-        }
-    }
-
-    fn next(&mut self) -> Result<Term<'a>, Fault> {
-        match self.rest.front() {
-            Some((None, _)) => Ok(self.rest.pop_front().expect("it is there").1),
-            _ => Err((self.offset, format!("`{}` lacks an operand", self.name))),
-        }
-    }
-
-    fn optional(&mut self, name: &str) -> Option<Term<'a>> {
-        let at = self.rest.iter().position(|(given, _)| *given == Some(name))?;
-        self.rest.remove(at).map(|(_, term)| term)
-    }
-
-    fn take(&mut self, name: &str) -> Result<Term<'a>, Fault> {
-        self.optional(name).ok_or_else(|| (self.offset, format!("`{}` lacks `{name}`", self.name)))
-    }
-
-    fn float(&mut self, name: &str) -> Result<f64, Fault> {
-        float(&self.take(name)?)
-    }
-
-    fn point(&mut self, name: &str) -> Result<DVec3, Fault> {
-        floats(&self.take(name)?).map(DVec3::from_array)
-    }
-
-    fn spectrum(&mut self, name: &str) -> Result<Spectrum, Fault> {
-        spectrum(self.take(name)?)
-    }
-
-    fn integer<T: std::str::FromStr>(&mut self, name: &str) -> Result<T, Fault> {
-        integer(&self.take(name)?)
-    }
-
-    fn text(&mut self, name: &str) -> Result<String, Fault> {
-        let term = self.take(name)?;
-        match term.kind {
-            TermKind::Text(text) => Ok(text),
-            _ => Err((term.offset, "expected a string".to_owned())),
-        }
-    }
-
-    fn boolean(&mut self, name: &str) -> Result<bool, Fault> {
-        let term = self.take(name)?;
-        match term.kind {
-            TermKind::Word("true") => Ok(true),
-            TermKind::Word("false") => Ok(false),
-            _ => Err((term.offset, "expected `true` or `false`".to_owned())),
-        }
-    }
-
-    fn map(&mut self) -> Result<DAffine3, Fault> {
-        if let Some(at) = self.optional("at") {
-            return Ok(DAffine3::from_translation(DVec3::from_array(floats(&at)?)));
-        }
-        match self.optional("map") {
-            Some(map) => Ok(DAffine3::from_cols_array(&floats(&map)?)),
-            None => Ok(DAffine3::IDENTITY),
-        }
-    }
-
-    fn index(&mut self, name: &str, prefix: char, length: usize) -> Result<Option<u32>, Fault> {
-        self.optional(name).map(|term| index(&term, prefix, length)).transpose()
-    }
-
-    fn unknown<T>(&self, what: &str) -> Result<T, Fault> {
-        Err((self.offset, format!("`{}` is no {what}", self.name)))
-    }
-
-    fn end(self) -> Result<(), Fault> {
-        match self.rest.front() {
-            None => Ok(()),
-            Some((_, term)) => Err((term.offset, format!("`{}` takes no such argument", self.name))),
-        }
-    }
-}
-
-fn float(term: &Term) -> Result<f64, Fault> {
-    match term.kind {
-        TermKind::Number(text) => text.parse().map_err(|_| (term.offset, format!("`{text}` is no number"))),
-        TermKind::Word("inf") => Ok(f64::INFINITY),
-        TermKind::Word("NaN") => Ok(f64::NAN),
-        _ => Err((term.offset, "expected a number".to_owned())),
-    }
-}
-
-fn float_list(term: &Term) -> Result<Vec<f64>, Fault> {
-    match &term.kind {
-        TermKind::List(items) => items.iter().map(float).collect(),
-        _ => Err((term.offset, "expected a list of numbers".to_owned())),
-    }
-}
-
-fn floats<const N: usize>(term: &Term) -> Result<[f64; N], Fault> {
-    float_list(term)?.try_into().map_err(|_| (term.offset, format!("expected {N} numbers")))
-}
-
-fn integer<T: std::str::FromStr>(term: &Term) -> Result<T, Fault> {
-    match term.kind {
-        TermKind::Number(text) => text.parse().map_err(|_| (term.offset, format!("`{text}` is no such integer"))),
-        _ => Err((term.offset, "expected an integer".to_owned())),
-    }
-}
-
-fn index(term: &Term, prefix: char, length: usize) -> Result<u32, Fault> {
-    let index = match term.kind {
-        TermKind::Word(word) => word.strip_prefix(prefix).and_then(|digits| digits.parse::<u32>().ok()),
-        _ => None,
-    };
-    match index {
-        Some(index) if (index as usize) < length => Ok(index),
-        Some(_) => Err((term.offset, "not defined before its use".to_owned())),
-        None => Err((term.offset, format!("expected `{prefix}` and a number"))),
-    }
-}
-
 fn node_id(term: &Term, ir: &Ir) -> Result<NodeId, Fault> {
     match term.kind {
         TermKind::Node(id) if (id as usize) < ir.nodes.len() => Ok(NodeId(id)),
@@ -301,11 +173,13 @@ fn spectrum(term: Term) -> Result<Spectrum, Fault> {
 fn bsdf(term: Term) -> Result<Bsdf, Fault> {
     let mut args = Args::new(term)?;
     let bsdf = match args.name {
-        "lambert" => Bsdf::Lambert { reflectance: args.spectrum("reflectance")? },
-        "oren_nayar" => Bsdf::OrenNayar { reflectance: args.spectrum("reflectance")?, sigma: args.float("sigma")? },
-        "mirror" => Bsdf::Mirror { reflectance: args.spectrum("reflectance")? },
-        "dielectric" => Bsdf::Dielectric { ior: args.spectrum("ior")? },
-        "conductor" => Bsdf::Conductor { eta: args.spectrum("eta")?, k: args.spectrum("k")? },
+        "lambert" => Bsdf::Lambert { reflectance: spectrum(args.take("reflectance")?)? },
+        "oren_nayar" => {
+            Bsdf::OrenNayar { reflectance: spectrum(args.take("reflectance")?)?, sigma: args.float("sigma")? }
+        }
+        "mirror" => Bsdf::Mirror { reflectance: spectrum(args.take("reflectance")?)? },
+        "dielectric" => Bsdf::Dielectric { ior: spectrum(args.take("ior")?)? },
+        "conductor" => Bsdf::Conductor { eta: spectrum(args.take("eta")?)?, k: spectrum(args.take("k")?)? },
         _ => return args.unknown("bsdf"),
     };
     args.end()?;
@@ -317,7 +191,7 @@ fn emitter(term: Term) -> Result<Emitter, Fault> {
     if args.name != "emitter" {
         return args.unknown("emitter");
     }
-    let emitter = Emitter { radiance: args.spectrum("radiance")?, two_sided: args.boolean("two_sided")? };
+    let emitter = Emitter { radiance: spectrum(args.take("radiance")?)?, two_sided: args.boolean("two_sided")? };
     args.end()?;
     Ok(emitter)
 }
@@ -345,13 +219,13 @@ fn node_kind(mut args: Args, ir: &Ir) -> Result<NodeKind, Fault> {
         }
         "with" => attributes(&mut args, ir, Precedence::Inner)?,
         "override" => attributes(&mut args, ir, Precedence::Outer)?,
-        "point_light" => NodeKind::Light(Box::new(Light::Point { intensity: args.spectrum("intensity")? })),
+        "point_light" => NodeKind::Light(Box::new(Light::Point { intensity: spectrum(args.take("intensity")?)? })),
         "distant_light" => NodeKind::Light(Box::new(Light::Distant {
-            irradiance: args.spectrum("irradiance")?,
+            irradiance: spectrum(args.take("irradiance")?)?,
             direction: args.point("direction")?,
         })),
         "constant_environment" => {
-            NodeKind::Environment(Box::new(Environment::Constant { radiance: args.spectrum("radiance")? }))
+            NodeKind::Environment(Box::new(Environment::Constant { radiance: spectrum(args.take("radiance")?)? }))
         }
         "hosek_wilkie" => NodeKind::Environment(Box::new(Environment::HosekWilkie {
             turbidity: args.float("turbidity")?,
@@ -508,6 +382,7 @@ fn strategy(term: &Term) -> Result<Strategy, Fault> {
 mod tests {
     use super::*;
     use crate::{Builder, verify};
+    use arsc_geometry::DAffine3;
     use proptest::prelude::*;
 
     fn number() -> impl Strategy2<Value = f64> {
