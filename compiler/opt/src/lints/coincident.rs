@@ -25,6 +25,8 @@ const FACES: usize = 6;
 const POINTS: usize = 24;
 /// Leaves looked at for all membership tests.
 const BUDGET: u64 = 3_000_000;
+/// Leaves of all objects at most: with more, listing the faces alone would take longer than the rest of the compiler.
+const MAX_LEAVES: u64 = 50_000;
 /// Pairs of faces with overlapping boxes looked at.
 const PAIRS: usize = 400_000;
 /// Findings at most.
@@ -56,16 +58,13 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
     if owners.len() < 2 || survey.ir.materials.len() < 2 {
         return;
     }
+    let sizes = survey.ir.expanded_leaves();
+    if owners.iter().map(|id| sizes[id.index()]).sum::<u64>() > MAX_LEAVES {
+        return;
+    }
     let boxes = survey.objects.iter().map(|id| survey.bounds[id.index()]).collect();
-    let mut search = Search {
-        survey,
-        owners,
-        sizes: survey.ir.expanded_leaves(),
-        boxes,
-        budget: BUDGET,
-        pairs: PAIRS,
-        reported: FxHashSet::default(),
-    };
+    let mut search =
+        Search { survey, owners, sizes, boxes, budget: BUDGET, pairs: PAIRS, reported: FxHashSet::default() };
     let entries = search.entries();
     let boxes = std::mem::take(&mut search.boxes);
     let cover = BoxTree::new(&boxes);
