@@ -80,6 +80,7 @@ pub struct Scene {
     members: Vec<Member>,
     parts: Vec<Part>,
     bounds: Aabb,
+    bounded: Aabb,
     stats: BuildStats,
     world: EmbreeScene<World>,
 }
@@ -96,7 +97,7 @@ impl Scene {
         let mut surfaces = Vec::with_capacity(geometry.surfaces.len());
         for (i, surface) in (0..).zip(&geometry.surfaces) {
             let model = SurfaceModel::new(surface, i)?;
-            plan.bounds = plan.bounds.union(&model.bounds());
+            plan.include(&model.bounds());
             plan.parts.push(Part { material: surface.material, kind: PartKind::Surface { surface: i } });
             surfaces.push(model);
         }
@@ -114,12 +115,18 @@ impl Scene {
             bytes: own_bytes + device()?.bytes().saturating_sub(before),
             build_time: start.elapsed(),
         };
-        Ok(Scene { members: plan.members, parts: plan.parts, bounds: plan.bounds, stats, world })
+        let Plan { members, parts, bounds, bounded } = plan;
+        Ok(Scene { members, parts, bounds, bounded, stats, world })
     }
 
     /// Holds everything; infinite where an unbounded solid or plane is.
     pub fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// Holds every bounded solid, instance and surface; empty if there is none.
+    pub fn bounded_parts(&self) -> Aabb {
+        self.bounded
     }
 
     pub fn stats(&self) -> &BuildStats {
@@ -338,9 +345,18 @@ struct Plan {
     members: Vec<Member>,
     parts: Vec<Part>,
     bounds: Aabb,
+    /// Of what is bounded alone.
+    bounded: Aabb,
 }
 
 impl Plan {
+    fn include(&mut self, bounds: &Aabb) {
+        self.bounds = self.bounds.union(bounds);
+        if bounds.is_finite() {
+            self.bounded = self.bounded.union(bounds);
+        }
+    }
+
     fn add_member(&mut self, model: Arc<SolidModel>, frame: Option<Frame>) -> Result<(), AccelError> {
         let solid = self.members.len() as u32;
         if self.parts.len() + model.leaves.len() > MOST_PARTS {
@@ -351,7 +367,7 @@ impl Plan {
         }
         let map = frame.as_ref().map(|frame| frame.world_from_object);
         let world = map.map_or(model.bounds, |map| model.bounds.transformed(&map));
-        self.bounds = self.bounds.union(&world);
+        self.include(&world);
         self.members.push(Member { model, frame });
         Ok(())
     }

@@ -209,6 +209,20 @@ fn lights_and_bounds_are_told() {
 }
 
 #[test]
+fn an_endless_floor_does_not_make_the_sky_outweigh_the_lamps() {
+    let mut b = Builder::new();
+    let floor = b.surface(Surface::Plane, DAffine3::IDENTITY, NOWHERE);
+    let ball = b.solid(Shape::Sphere { radius: 2.0 }, DAffine3::from_translation(DVec3::Z * 5.0), NOWHERE);
+    let sky = environment(&mut b, 1.0);
+    let ir = scene(b, vec![floor, ball, sky], vec![Action::CollectLights]);
+    let host = Memory::default();
+    run(&ir, &small(), &host).unwrap();
+    // 4 pi^2 W m^-2 nm^-1 on the square of 12^(1/2) m, the radius of a sphere about the ball's box, over 470 nm.
+    let said = host.said.into_inner().unwrap().join("\n");
+    assert!(said.contains("environment 0: 2.2266e5 W"), "{said}");
+}
+
+#[test]
 fn a_lamp_goes_behind_the_ceiling_in_whose_plane_it_lies() {
     let mut b = Builder::new();
     let ceiling = b.surface(Surface::Rectangle { width: 9.0, depth: 9.0 }, DAffine3::IDENTITY, NOWHERE);

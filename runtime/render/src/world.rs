@@ -21,7 +21,7 @@ pub struct Material {
 /// Share of the light samples that is spread evenly over the lights.
 const FLOOR: f64 = 0.05;
 
-/// Radius that stands for that of an unbounded scene when powers are compared.
+/// Radius that stands for that of a scene of unbounded geometry alone when powers are compared.
 const UNBOUNDED_RADIUS: f64 = 100.0;
 
 /// A light as light sampling sees it; indices into the world's tables.
@@ -105,11 +105,16 @@ impl World {
         }
     }
 
-    /// Radius of a sphere about the bounds of the geometry.
+    /// Radius of a sphere about the bounded geometry: what an endless floor receives far away from it is not looked at,
+    /// and would starve the lights nearby.
     fn scene_radius(&self) -> f64 {
-        let bounds = self.geometry.bounds();
-        let radius = if bounds.is_empty() { 0.0 } else { 0.5 * bounds.extent().length() };
-        if radius.is_finite() { radius } else { UNBOUNDED_RADIUS }
+        let bounds = self.geometry.bounded_parts();
+        let radius = 0.5 * bounds.extent().length();
+        match (bounds.is_empty(), self.geometry.bounds().is_empty()) {
+            (true, true) => 0.0,
+            (false, _) if radius.is_finite() => radius,
+            _ => UNBOUNDED_RADIUS,
+        }
     }
 
     /// The lights that light sampling chooses from, with their powers in W over the rendered range.
