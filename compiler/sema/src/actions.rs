@@ -2,6 +2,7 @@
 //!
 //! The stack holds the scene at first. An action finds what it needs on top.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use arsc_diagnostics::codes::sema as codes;
@@ -48,10 +49,27 @@ pub fn check(actions: &[ActionAt], span: Span, lints: &mut Vec<Diagnostic>) -> R
     for at in actions {
         apply(&mut stack, at)?;
     }
+    no_picture_twice(actions)?;
     if !actions.iter().any(|at| matches!(at.action, Action::WriteExr { .. } | Action::WritePng { .. })) {
         let lint =
             Diagnostic::new(codes::NO_OUTPUT, "the action sequence writes no file").label(span, "no output here");
         lints.push(lint.help("add `write_exr(\"name.exr\")` after `path_trace`"));
+    }
+    Ok(())
+}
+
+/// The second of two pictures of one name would replace the first.
+fn no_picture_twice(actions: &[ActionAt]) -> Result<(), Box<Diagnostic>> {
+    let mut seen = BTreeMap::new();
+    for at in actions {
+        if let Action::WriteExr { path } | Action::WritePng { path } = &at.action
+            && let Some(first) = seen.insert(path, at.origin)
+        {
+            let message = format!("the picture `{path}` is written twice");
+            let failure = Diagnostic::new(codes::STACK, message).label(at.origin, "this one replaces the other");
+            let failure = if first == at.origin { failure } else { failure.label(first, "first written here") };
+            return Err(Box::new(failure.help("give each picture a name of its own")));
+        }
     }
     Ok(())
 }

@@ -158,8 +158,8 @@ fn values() {
     expect("import std.material { lambert }\nscene { sphere() |> with(lambert(-0.1)) }", &[("E0201", "-0.1")]);
     // The three blocks fail independently.
     expect(
-        "scene { sphere(0) }\ncamera perspective((0, 5, 5), (0, 0, 0), fov: 0deg)\nactions { write_png(\"a\") }",
-        &[("E0201", "0"), ("E0201", "0deg"), ("E0301", "write_png(\"a\")")],
+        "scene { sphere(0) }\ncamera perspective((0, 5, 5), (0, 0, 0), fov: 0deg)\nactions { write_png(\"a.png\") }",
+        &[("E0201", "0"), ("E0201", "0deg"), ("E0301", "write_png(\"a.png\")")],
     );
 }
 
@@ -183,19 +183,28 @@ fn action_stacks() {
     expect("actions { tone_map() }", &[("E0301", "tone_map()")]);
     let found = findings("actions { tone_map(exposure: auto) }");
     assert!(found[0].ends_with("`tone_map` needs an image, but the stack holds a scene"), "{found:?}");
-    expect("actions { path_trace(); path_trace(); write_exr(\"a\") }", &[("E0301", "path_trace()")]);
-    expect("actions { path_trace(); swap(); drop(); write_exr(\"a\") }", &[]);
-    expect("actions { path_trace(); dup(); tone_map(); write_png(\"a\"); drop(); write_exr(\"b\") }", &[]);
+    expect("actions { path_trace(); path_trace(); write_exr(\"a.exr\") }", &[("E0301", "path_trace()")]);
+    expect("actions { path_trace(); swap(); drop(); write_exr(\"a.exr\") }", &[]);
+    expect("actions { path_trace(); dup(); tone_map(); write_png(\"a.png\"); drop(); write_exr(\"b.exr\") }", &[]);
     expect("actions { drop(); drop() }", &[("E0301", "drop()")]);
     expect("actions { path_trace() }", &[("W0111", "actions { path_trace() }")]);
     expect("import std.action { standard_render }\nactions { standard_render(\"a\") }", &[]);
     expect(
-        "fn both(n: int) -> list<action> { [path_trace(n), tone_map()] }\nactions { both(3); write_png(\"a\") }",
+        "fn both(n: int) -> list<action> { [path_trace(n), tone_map()] }\nactions { both(3); write_png(\"a.png\") }",
         &[],
     );
-    expect("actions { path_trace(); tone_map(exposure: ev(1.5)); write_png(\"a\") }", &[]);
-    expect("actions { path_trace(); tone_map(exposure: atuo); write_png(\"a\") }", &[("E0101", "atuo")]);
-    expect("actions { accelerate(strategy: tree); path_trace(); write_exr(\"a\") }", &[]);
+    expect("actions { path_trace(); tone_map(exposure: ev(1.5)); write_png(\"a.png\") }", &[]);
+    expect("actions { path_trace(); tone_map(exposure: atuo); write_png(\"a.png\") }", &[("E0101", "atuo")]);
+    for name in ["a", "a.png", ".exr", "../a.exr", "/a.exr", "a/../../b.exr"] {
+        let quoted = format!("\"{name}\"");
+        expect(&format!("actions {{ path_trace(); write_exr({quoted}) }}"), &[("E0201", &quoted)]);
+    }
+    expect("actions { path_trace(); write_exr(\"sub/a.EXR\") }", &[]);
+    expect(
+        "actions { path_trace(); write_exr(\"a.exr\"); dup(); write_exr(\"a.exr\") }",
+        &[("E0301", "write_exr(\"a.exr\")")],
+    );
+    expect("actions { accelerate(strategy: tree); path_trace(); write_exr(\"a.exr\") }", &[]);
 }
 
 #[test]

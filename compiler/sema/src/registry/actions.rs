@@ -1,8 +1,11 @@
 //! Actions: what is done with the scene. The stack effect of each stands in [`crate::actions`].
 
+use arsc_diagnostics::codes::sema as codes;
 use arsc_ir::{Action, Exposure};
 
 use super::{Builtin, Param};
+use crate::code::Site;
+use crate::eval::Eval;
 use crate::types::Type::{self, Float, Int, Str};
 use crate::value::Value;
 
@@ -45,7 +48,7 @@ fn scene_actions() -> Vec<Builtin> {
 }
 
 fn image_actions() -> Vec<Builtin> {
-    let path = || Param::new("path", Str, "file name within the output directory");
+    let path = |doc| Param::new("path", Str, doc);
     vec![
         Builtin::new("tone_map", "Maps radiance to display values. Stack: image<spectral> → image<display>.")
             .param(
@@ -59,16 +62,31 @@ fn image_actions() -> Vec<Builtin> {
             .param(Param::new("stops", Float, "may be negative"))
             .runs(Type::Exposure, |_, a, _| Ok(Value::Exposure(Exposure::Ev(a[0].as_float())))),
         Builtin::new("write_exr", "Writes a spectral EXR file. Stack: image<spectral> → image<spectral>.")
-            .param(path())
+            .param(path("file name within the output directory, ending in `.exr`"))
             .runs(Type::Action, |_, a, site| {
-                Ok(Value::action(Action::WriteExr { path: a[0].as_str().to_string() }, site.span))
+                let path = picture_name(&a[0], ".exr", site)?;
+                Ok(Value::action(Action::WriteExr { path }, site.span))
             }),
         Builtin::new("write_png", "Writes a PNG file. Stack: image<display> → image<display>.")
-            .param(path())
+            .param(path("file name within the output directory, ending in `.png`"))
             .runs(Type::Action, |_, a, site| {
-                Ok(Value::action(Action::WritePng { path: a[0].as_str().to_string() }, site.span))
+                let path = picture_name(&a[0], ".png", site)?;
+                Ok(Value::action(Action::WritePng { path }, site.span))
             }),
     ]
+}
+
+/// The name of a picture: it says what kind of file it is, and does not lead out of the output folder.
+fn picture_name(value: &Value, ending: &str, site: &Site) -> Eval<String> {
+    let path = value.as_str();
+    let message = if path.starts_with('/') || path.split('/').any(|part| part == "..") {
+        "a picture's name must not lead out of the output folder".to_owned()
+    } else if !path.to_ascii_lowercase().ends_with(ending) || path.len() == ending.len() {
+        format!("the picture's name must end in `{ending}`")
+    } else {
+        return Ok(path.to_string());
+    };
+    Err(site.fail_arg(0, codes::OUT_OF_RANGE, message, "this name"))
 }
 
 fn words() -> Vec<Builtin> {
