@@ -136,6 +136,11 @@ fn values() {
     expect("scene { sphere(radius: -1) }", &[("E0201", "-1")]);
     expect("scene { sphere(radius: 0) }", &[("E0201", "0")]);
     expect("scene { box(min: (0, 0, 0), max: (1, 0, 1)) }", &[("E0201", "(1, 0, 1)")]);
+    expect(
+        "scene { box(min: (0, 0, 0), max: (1, 1, 1), center: true) }",
+        &[("E0104", "box(min: (0, 0, 0), max: (1, 1, 1), center: true)")],
+    );
+    expect("scene { box(center: false) }", &[]);
     expect("scene { sphere(1 / 0) }", &[("E0202", "/")]);
     expect("scene { sphere(5 % 0) }", &[("E0202", "%")]);
     expect("scene { sphere(1e300 * 1e300) }", &[("E0202", "*")]);

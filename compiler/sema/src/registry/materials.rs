@@ -118,14 +118,12 @@ fn bsdfs() -> Vec<Builtin> {
         of("oren_nayar", "Rough diffuse reflection (Oren and Nayar 1994).")
             .param(reflectance())
             .param(
-                Param::new("sigma", Angle, "standard deviation of the facets' slope")
-                    .degrees(17.0)
-                    .degrees_between(-1e-9, 90.0),
+                Param::new("sigma", Angle, "standard deviation of the facets' slope").degrees(17.0).degrees_below(90.0),
             )
             .runs(Type::Bsdf, |m, args, site| {
                 m.lint_reflectance(&args[0], site, 0);
                 let reflectance = args[0].as_spectrum().as_ref().clone();
-                bsdf(m, Bsdf::OrenNayar { reflectance, sigma: args[1].as_float().max(0.0) })
+                bsdf(m, Bsdf::OrenNayar { reflectance, sigma: args[1].as_float() })
             }),
         of("mirror", "Ideal mirror, the same at every angle.")
             .param(reflectance().default_value("1", Value::spectrum(arsc_ir::Spectrum::Constant(1.0))))

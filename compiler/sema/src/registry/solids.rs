@@ -103,7 +103,14 @@ fn flat() -> Vec<Builtin> {
     vec![
         solid("box", "A box with faces parallel to the axes: by `size`, or by two opposite corners `min` and `max`.")
             .param(Param::new("size", Vec3, "edge lengths; (1, 1, 1) if no corner is given").optional().positive())
-            .param(Param::new("center", Bool, "centred at the origin; else the smallest corner is there").bool(true))
+            .param(
+                Param::new(
+                    "center",
+                    Bool,
+                    "with `size`: centred at the origin, as if left out; else the smallest corner is there",
+                )
+                .optional(),
+            )
             .param(Param::new("min", Point, "smallest corner").optional())
             .param(Param::new("max", Point, "largest corner").optional())
             .runs(Solid, block),
@@ -139,9 +146,9 @@ fn block(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
     match (&args[0], &args[2], &args[3]) {
         (size, Value::Missing, Value::Missing) => {
             let size = if size.is_given() { size.as_vec3() } else { DVec3::ONE };
-            sized_box(m, size, args[1].as_bool(), site)
+            sized_box(m, size, !args[1].is_given() || args[1].as_bool(), site)
         }
-        (Value::Missing, min, max) if min.is_given() && max.is_given() => {
+        (Value::Missing, min, max) if min.is_given() && max.is_given() && !args[1].is_given() => {
             let (min, max) = (min.as_vec3(), max.as_vec3());
             if !min.cmplt(max).all() {
                 let message = "`max` of a box must exceed `min` in every axis";
@@ -150,7 +157,7 @@ fn block(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
             m.solid(Shape::Box { min, max }, DAffine3::IDENTITY, site)
         }
         _ => Err(site
-            .fail(codes::WRONG_ARGUMENTS, "a box takes either `size` or both `min` and `max`")
+            .fail(codes::WRONG_ARGUMENTS, "a box takes either `size`, and `center` if it must, or both `min` and `max`")
             .help("write `box(size: (1, 2, 3))` or `box(min: (0, 0, 0), max: (1, 2, 3))`")
             .into()),
     }
