@@ -33,6 +33,18 @@ fn suggestions() {
         analysed.diagnostics[0].help.as_deref(),
         Some("it is in std.material: `import std.material { lambert }`")
     );
+    for (text, help) in [
+        ("let a = sphere().translate(x: 1)", "functions are applied by `|>`: `value |> translate(…)`"),
+        ("let a = cube() |> translate([1, 2, 3])", "write a vector: `(x, y, z)`"),
+        (
+            "camera perspective(eye: (0, 0, 5), target: (0, 0, 0))",
+            "give another, such as `up: (0, 1, 0)` for a view from above",
+        ),
+    ] {
+        let mut session = Session::default();
+        let analysed = session.analyse(text, &[], arsc_sema::Options::default());
+        assert_eq!(analysed.diagnostics[0].help.as_deref(), Some(help), "{:#?}", analysed.diagnostics);
+    }
 }
 
 #[test]

@@ -61,6 +61,12 @@ pub(crate) fn adjacent_help(before: &str, after: &str) -> Option<String> {
         "or" => return Some("write `||`".to_string()),
         _ => {}
     }
+    if let Some(help) = parted_unit(before, after) {
+        return Some(help);
+    }
+    if after.starts_with("{ <") {
+        return Some(format!("a shape is a call: `{}(…)`, and vectors are written `(x, y, z)`", last_word(before)));
+    }
     if after.starts_with('{') && before.ends_with(')') {
         return Some(match first {
             "union" | "difference" | "intersection" => {
@@ -74,6 +80,14 @@ pub(crate) fn adjacent_help(before: &str, after: &str) -> Option<String> {
     }
     let transforms = ["translate", "rotate", "rotate_x", "rotate_y", "rotate_z", "scale", "mirror", "with"];
     (transforms.contains(&first) && before.ends_with(')')).then(|| format!("write `shape |> {first}(…)`"))
+}
+
+/// `45 deg`: what to write, if a number and its unit stand apart.
+pub(crate) fn parted_unit(before: &str, after: &str) -> Option<String> {
+    let unit = leading_word(after);
+    let number = &before[before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len()..];
+    let is_parted = ["deg", "rad", "nm", "K"].contains(&unit) && number.starts_with(|c: char| c.is_ascii_digit());
+    is_parted.then(|| format!("a unit stands right behind its number: `{number}{unit}`"))
 }
 
 /// How far the grammar came, and the rules that it tried there.
@@ -169,6 +183,17 @@ impl Context<'_> {
         };
         match self.token {
             "?" => Slip::new("there is no `? :` operator", "not an operator", "write `if condition { a } else { b }`"),
+            "#" if leading_word(&self.slice[self.at + 1..]) == "include" => Slip::new(
+                "there are no directives",
+                "not a comment",
+                "modules are loaded with `import \"file.arsl\" { name }`; comments start with `//`",
+            ),
+            "#" if ["declare", "local", "define"].contains(&leading_word(&self.slice[self.at + 1..])) => Slip::new(
+                "there are no directives",
+                "not a comment",
+                "names are bound with `let name = value`; comments start with `//`",
+            ),
+            "<" => Slip::new("`<` only compares", "nothing to compare before it", "vectors are written `(x, y, z)`"),
             "#" => replace("comments start with `//`", "write `// comment`", "//"),
             "^" => replace("powers are written `**`", "write `a ** b`", "**"),
             "~" | "\\" | "`" => Slip::new("this character has no meaning here", "unknown", "remove it"),
@@ -192,7 +217,9 @@ impl Context<'_> {
         let is_digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
         if is_digit(self.slice[..point].chars().next_back()) {
             let replace = (point + 1, point + 1, "0");
-            return Slip::replacing("a number ends with a digit", "no digit after the point", "write `1.0`", replace);
+            let number = &self.slice[self.slice[..point].trim_end_matches(|c: char| c.is_ascii_digit()).len()..point];
+            let help = format!("write `{number}.0`");
+            return Slip::replacing("a number ends with a digit", "no digit after the point", &help, replace);
         }
         if is_digit(self.slice[point + 1..].chars().next()) {
             let replace = (point, point, "0");
@@ -338,6 +365,10 @@ fn foreign_word(word: &str) -> Option<&'static str> {
         "struct" | "record" | "class" => "record types are declared with `type name = { field: type }`",
         _ => return None,
     })
+}
+
+fn last_word(text: &str) -> &str {
+    &text[text.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_').len()..]
 }
 
 fn leading_word(text: &str) -> &str {

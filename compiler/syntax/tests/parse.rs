@@ -117,3 +117,24 @@ fn a_block_left_open_ends_at_the_next_item() {
     let kinds: Vec<String> = parsed.module.items.iter().map(show).collect();
     assert_eq!(kinds, ["scene {for (0 .. 3) {sphere(i)}}", "camera perspective()", "actions {}"]);
 }
+
+/// What people of other languages write is answered with what to write here.
+#[test]
+fn slips_are_told_their_remedy() {
+    for (text, remedy) in [
+        ("scene { sphere(5.) }", "write `5.0`"),
+        ("scene { f(45 deg) }", "a unit stands right behind its number: `45deg`"),
+        ("let a = [1.5 rad]", "a unit stands right behind its number: `1.5rad`"),
+        ("let a = 550 nm", "a unit stands right behind its number: `550nm`"),
+        ("#include \"a.inc\"", "modules are loaded with `import \"file.arsl\" { name }`; comments start with `//`"),
+        ("#declare R = 2;", "names are bound with `let name = value`; comments start with `//`"),
+        ("# a comment", "write `// comment`"),
+        ("scene { sphere { <0, 1, 2>, 2 } }", "a shape is a call: `sphere(…)`, and vectors are written `(x, y, z)`"),
+        ("let a = f(<0, 1, 2>)", "vectors are written `(x, y, z)`"),
+    ] {
+        let diagnostics = arsc_syntax::parse(SourceId(0), text).diagnostics;
+        assert_eq!(diagnostics[0].help.as_deref(), Some(remedy), "{text}: {diagnostics:#?}");
+    }
+    let missing = arsc_syntax::parse(SourceId(0), "let a = f(x y)").diagnostics;
+    assert!(missing[0].help.is_none() && missing[0].suggestions[0].replacement == ",", "{missing:#?}");
+}

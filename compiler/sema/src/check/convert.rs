@@ -305,6 +305,8 @@ fn advice(found: &Type, wanted: &Type) -> Option<String> {
             "write `constant_emission(x)`, or scale a spectrum: `d65 * x` (from std.spectra)"
         }
         (Int | Float, Vec3) => "write a vector: `(x, y, z)`",
+        (List(_), Vec2) => "write a vector: `(x, y)`",
+        (List(_), Vec3 | Point) => "write a vector: `(x, y, z)`",
         (Tuple(_) | Vec3 | Point, Direction) => "`direction(x, y, z)` and `normalize(v)` give directions",
         (Point, Vec3) => "the vector from the origin is `p - point(0, 0, 0)`",
         (Vec3 | Direction, Point) => "the point at the end of a vector is `point(0, 0, 0) + v`",

@@ -7,7 +7,7 @@ use arsc_syntax::ast::{self, ExprKind};
 use super::names::{Meaning, with_suggestion};
 use super::{Checker, Typed};
 use crate::code::{Code, FnId};
-use crate::registry::{BuiltinId, choices};
+use crate::registry::{BuiltinId, PRELUDE, choices};
 use crate::suggest::closest;
 use crate::types::Type;
 use crate::value::{Closure, Value};
@@ -179,6 +179,9 @@ impl Checker<'_> {
             (None, Type::Record(_)) if fields.len() <= 8 => {
                 let names: Vec<&str> = fields.iter().map(|(name, _)| name.as_str()).collect();
                 diagnostic.help(format!("it has: {}", names.join(", ")))
+            }
+            (None, _) if self.registry.find(PRELUDE, &name.name).is_some() => {
+                diagnostic.help(format!("functions are applied by `|>`: `value |> {}(…)`", name.name))
             }
             _ => with_suggestion(diagnostic, name.span, near),
         };

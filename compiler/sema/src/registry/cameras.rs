@@ -85,7 +85,8 @@ fn perspective(_: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
     };
     if view.cross(up).try_normalize().is_none() {
         let message = "`up` must not be parallel to the direction of view";
-        return Err(site.fail_arg(2, codes::OUT_OF_RANGE, message, "parallel to `target` - `eye`, or zero"));
+        let failure = site.fail_arg(2, codes::OUT_OF_RANGE, message, "parallel to `target` - `eye`, or zero");
+        return Err(Box::new(failure.help("give another, such as `up: (0, 1, 0)` for a view from above")));
     }
     let size = args[4].as_tuple();
     let camera = Camera {

@@ -140,12 +140,12 @@ impl<'t> Builder<'t> {
     /// A zero-width error production for a comma: reported at the end of what stands before it.
     fn missing_comma(&mut self, before: Span) {
         let at = Span::new(self.source, before.end as usize, before.end as usize);
-        self.report(
-            Diagnostic::new(codes::syntax::MISSING_COMMA, "a comma is missing").label(at, "expected `,` here").suggest(
-                at,
-                ",",
-                Applicability::MaybeIncorrect,
-            ),
-        );
+        let diagnostic =
+            Diagnostic::new(codes::syntax::MISSING_COMMA, "a comma is missing").label(at, "expected `,` here");
+        let (before, after) = self.text.split_at(before.end as usize);
+        self.report(match diagnose::parted_unit(before, after.trim_start()) {
+            Some(help) => diagnostic.help(help),
+            None => diagnostic.suggest(at, ",", Applicability::MaybeIncorrect),
+        });
     }
 }
