@@ -17,14 +17,14 @@ use rustc_hash::FxHashSet;
 
 use crate::bound_unbounded::contexts;
 use crate::bounds::{bounds, padded, place};
-use crate::box_tree::BoxTree;
+use crate::box_tree::{BoxTree, Work};
 use crate::flatten::collapse;
 use crate::pipeline::Log;
 
 /// Candidates looked at per operand of a union.
 const CANDIDATES: usize = 32;
-/// Leaves looked at per operand of a union, on average.
-const CLASSIFICATIONS: usize = 256;
+/// Nodes looked at per operand of a union, on average.
+const VISITS: usize = 256;
 /// Trees are searched this deep for a proof that a box is inside.
 const PROOF_DEPTH: usize = 32;
 
@@ -131,19 +131,20 @@ fn without_absorbed(ir: &Ir, of: &[NodeId], bounds: &[Aabb], log: &mut Log) -> V
     kept
 }
 
-/// For each operand of a union, another operand inside of which its box lies.
+/// For each operand of a union, another operand inside of which its box lies, as far as a bounded search finds one.
 ///
 /// Being inside is strict, so the relation has no cycles and its last elements stay.
 pub(crate) fn absorbed(ir: &Ir, of: &[NodeId], bounds: &[Aabb]) -> Vec<Option<usize>> {
     let boxes: Vec<Aabb> = of.iter().map(|operand| bounds[operand.index()]).collect();
     let tree = BoxTree::new(&boxes);
-    let mut proof = Proof { ir, classifications: CLASSIFICATIONS * of.len() };
+    let mut work = Work::for_searches(of.len());
+    let mut proof = Proof { ir, visits: VISITS * of.len() };
     let mut absorber = |i: usize| {
         let cell = padded(&boxes[i]);
         let mut candidates = CANDIDATES;
         let mut found = None;
-        tree.overlapping(&cell, |j| {
-            if j != i && boxes[j].contains_box(&cell) {
+        tree.containing(&cell, &mut work, |j| {
+            if j != i {
                 candidates -= 1;
                 if proof.inside(of[j], &cell, 0) {
                     found = Some(j);
@@ -159,19 +160,20 @@ pub(crate) fn absorbed(ir: &Ir, of: &[NodeId], bounds: &[Aabb]) -> Vec<Option<us
 /// Proofs about boxes and whole trees, with a budget.
 pub(crate) struct Proof<'a> {
     pub ir: &'a Ir,
-    pub classifications: usize,
+    /// Nodes that may still be looked at.
+    pub visits: usize,
 }
 
 impl Proof<'_> {
     /// The box certainly lies in the solid.
     pub fn inside(&mut self, id: NodeId, cell: &Aabb, depth: usize) -> bool {
-        if depth > PROOF_DEPTH {
+        if !self.visit(depth) {
             return false;
         }
         let ir = self.ir;
         match ir.kind(id) {
-            NodeKind::Leaf(leaf) => self.classify(leaf, cell) == Classification::Inside,
-            NodeKind::Union(of) => of.iter().any(|&operand| self.inside(operand, cell, depth + 1)),
+            NodeKind::Leaf(leaf) => classify(leaf, cell) == Classification::Inside,
+            NodeKind::Union(of) => self.any(of, |proof, operand| proof.inside(operand, cell, depth + 1)),
             NodeKind::Intersection(of) => of.iter().all(|&operand| self.inside(operand, cell, depth + 1)),
             NodeKind::Difference(of) => {
                 self.inside(of[0], cell, depth + 1)
@@ -182,25 +184,40 @@ impl Proof<'_> {
     }
 
     /// The box certainly lies outside of the solid.
-    pub fn outside(&mut self, id: NodeId, cell: &Aabb, depth: usize) -> bool {
-        if depth > PROOF_DEPTH {
+    fn outside(&mut self, id: NodeId, cell: &Aabb, depth: usize) -> bool {
+        if !self.visit(depth) {
             return false;
         }
         let ir = self.ir;
         match ir.kind(id) {
-            NodeKind::Leaf(leaf) => self.classify(leaf, cell) == Classification::Outside,
+            NodeKind::Leaf(leaf) => classify(leaf, cell) == Classification::Outside,
             NodeKind::Union(of) => of.iter().all(|&operand| self.outside(operand, cell, depth + 1)),
-            NodeKind::Intersection(of) => of.iter().any(|&operand| self.outside(operand, cell, depth + 1)),
+            NodeKind::Intersection(of) => self.any(of, |proof, operand| proof.outside(operand, cell, depth + 1)),
             NodeKind::Difference(of) => self.outside(of[0], cell, depth + 1),
             _ => false,
         }
     }
 
-    fn classify(&mut self, leaf: &Leaf, cell: &Aabb) -> Classification {
-        if self.classifications == 0 {
-            return Classification::Boundary;
-        }
-        self.classifications -= 1;
-        place(leaf, &DAffine3::IDENTITY).map_or(Classification::Boundary, |placed| placed.classify(cell))
+    fn visit(&mut self, depth: usize) -> bool {
+        let may = depth <= PROOF_DEPTH && self.visits > 0;
+        self.visits -= usize::from(may);
+        may
     }
+
+    /// Any operand, looked at until the budget ends.
+    fn any(&mut self, of: &[NodeId], mut holds: impl FnMut(&mut Self, NodeId) -> bool) -> bool {
+        for &operand in of {
+            if self.visits == 0 {
+                return false;
+            }
+            if holds(self, operand) {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+fn classify(leaf: &Leaf, cell: &Aabb) -> Classification {
+    place(leaf, &DAffine3::IDENTITY).map_or(Classification::Boundary, |placed| placed.classify(cell))
 }

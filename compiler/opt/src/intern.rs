@@ -36,9 +36,11 @@ impl<T: Structural> Interner<T> {
     }
 }
 
-/// Adding zero makes -0 and 0, which compare equal, hash alike.
+/// Adding zero makes -0 and 0, which compare equal, hash alike. The low bits of short numbers are zeros, and the hasher
+/// multiplies, which carries nothing down to them: the high bits go there, too.
 pub(crate) fn hash_f64(value: f64, hasher: &mut FxHasher) {
-    (value + 0.0).to_bits().hash(hasher);
+    let bits = (value + 0.0).to_bits();
+    (bits ^ bits >> 32).hash(hasher);
 }
 
 fn hash_all(values: &[f64], hasher: &mut FxHasher) {

@@ -21,12 +21,9 @@ use arsc_geometry::{Aabb, Classification, DAffine3};
 use arsc_ir::{Ir, Node, NodeId, NodeKind};
 
 use crate::bounds::{bounds, leaf_bounds, padded, place};
-use crate::box_tree::BoxTree;
+use crate::box_tree::{BoxTree, Work};
 use crate::fold_transforms::INSTANCE_LEAVES;
 use crate::pipeline::Log;
-
-/// Pairs looked at per part before the rest is left in one union.
-const PAIRS_PER_PART: usize = 64;
 
 /// An operand of the union with the map above it.
 #[derive(Clone, Copy)]
@@ -89,22 +86,25 @@ fn part_bounds(ir: &Ir, part: &Part, local: &[Aabb]) -> Aabb {
 }
 
 /// Parts connected by touching boxes, in the order of their first parts; parts within keep their order.
+///
+/// A pair of touching parts is found by the search of either. Where both searches end early it may be missed, so all
+/// parts with such a search stay together.
 fn independent(ir: &Ir, parts: &[Part], local: &[Aabb]) -> Vec<Vec<Part>> {
     let boxes: Vec<Aabb> = parts.iter().map(|part| padded(&part_bounds(ir, part, local))).collect();
     let tree = BoxTree::new(&boxes);
     let mut sets = DisjointSets::new(parts.len());
-    let mut budget = PAIRS_PER_PART * parts.len();
+    let mut work = Work::for_searches(parts.len());
+    let mut cut_short = None;
     for (i, query) in boxes.iter().enumerate() {
-        tree.overlapping(query, |j| {
-            budget = budget.saturating_sub(1);
-            if j < i && sets.find(i) != sets.find(j) && !apart(ir, [&parts[i], &parts[j]], [query, &boxes[j]]) {
+        let complete = tree.overlapping(query, &mut work, |j| {
+            if sets.find(i) != sets.find(j) && !apart(ir, [&parts[i], &parts[j]], [query, &boxes[j]]) {
                 sets.join(i, j);
             }
-            budget > 0
+            true
         });
-    }
-    if budget == 0 {
-        return vec![parts.to_vec()];
+        if !complete {
+            sets.join(*cut_short.get_or_insert(i), i);
+        }
     }
     let mut group_of_root = vec![usize::MAX; parts.len()];
     let mut groups: Vec<Vec<Part>> = Vec::new();

@@ -16,19 +16,17 @@ use rustc_hash::FxHashSet;
 
 use super::face::Face;
 use super::sampling::roberts;
-use super::survey::Survey;
-use crate::box_tree::BoxTree;
+use super::survey::{Membership, Survey};
+use crate::box_tree::{BoxTree, Work};
 
 /// Faces per leaf at most.
 const FACES: usize = 6;
 /// Points tried per pair of faces.
 const POINTS: usize = 24;
-/// Leaves looked at for all membership tests.
-const BUDGET: u64 = 3_000_000;
 /// Leaves of all objects at most: with more, listing the faces alone would take longer than the rest of the compiler.
 const MAX_LEAVES: u64 = 50_000;
-/// Pairs of faces with overlapping boxes looked at.
-const PAIRS: usize = 400_000;
+/// Searches among faces and objects whose work is granted.
+const SEARCHES: usize = 20_000;
 /// Findings at most.
 const FINDINGS: usize = 20;
 
@@ -45,11 +43,11 @@ struct Search<'a> {
     survey: &'a Survey<'a>,
     /// Solid objects, then surfaces.
     owners: Vec<NodeId>,
-    sizes: Vec<u64>,
     /// Boxes of the solid objects.
     boxes: Vec<Aabb>,
-    budget: u64,
-    pairs: usize,
+    membership: Membership<'a>,
+    /// For searches among faces, and among the objects that may cover them.
+    work: Work,
     reported: FxHashSet<(Span, Span)>,
 }
 
@@ -63,8 +61,9 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
         return;
     }
     let boxes = survey.objects.iter().map(|id| survey.bounds[id.index()]).collect();
-    let mut search =
-        Search { survey, owners, sizes, boxes, budget: BUDGET, pairs: PAIRS, reported: FxHashSet::default() };
+    let membership = Membership::new(survey);
+    let work = Work::for_searches(SEARCHES);
+    let mut search = Search { survey, owners, boxes, membership, work, reported: FxHashSet::default() };
     let entries = search.entries();
     let boxes = std::mem::take(&mut search.boxes);
     let cover = BoxTree::new(&boxes);
@@ -73,7 +72,7 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
         if unlike && bucket.iter().any(|entry| entry.owner != bucket[0].owner) {
             search.bucket(bucket, &cover, findings);
         }
-        if search.budget == 0 || search.pairs == 0 || search.reported.len() >= FINDINGS {
+        if search.membership.is_spent() || search.work.is_spent() || search.reported.len() >= FINDINGS {
             return;
         }
     }
@@ -125,16 +124,15 @@ impl Search<'_> {
         let tree = BoxTree::new(&boxes);
         for i in 0..bucket.len() {
             let mut candidates = Vec::new();
-            let mut pairs = self.pairs;
-            tree.overlapping(&boxes[i], |j| {
-                pairs = pairs.saturating_sub(1);
-                if j > i && bucket[j].owner != bucket[i].owner && self.material(&bucket[j]) != self.material(&bucket[i])
-                {
+            let mut work = std::mem::take(&mut self.work);
+            let unlike = |a: &Entry, b: &Entry| a.owner != b.owner && self.material(a) != self.material(b);
+            tree.overlapping(&boxes[i], &mut work, |j| {
+                if j > i && unlike(&bucket[i], &bucket[j]) {
                     candidates.push(j);
                 }
-                candidates.len() < 16 && pairs > 0
+                candidates.len() < 16
             });
-            self.pairs = pairs;
+            self.work = work;
             candidates.sort_unstable();
             for j in candidates {
                 let spans = [bucket[i], bucket[j]].map(|entry| self.survey.origin(NodeId(entry.leaf)));
@@ -177,7 +175,8 @@ impl Search<'_> {
         for (k, entry) in entries.into_iter().enumerate() {
             outward[k] = if entry.owner < solids {
                 let owner = self.owners[entry.owner as usize];
-                let (behind, before) = (self.contains(owner, p - step)?, self.contains(owner, p + step)?);
+                let (behind, before) =
+                    (self.membership.contains(owner, p - step)?, self.membership.contains(owner, p + step)?);
                 if behind == before {
                     return None;
                 }
@@ -204,7 +203,7 @@ impl Search<'_> {
     /// Some other opaque solid holds the point.
     fn covered(&mut self, p: DVec3, entries: [&Entry; 2], cover: &BoxTree) -> Option<bool> {
         let mut others = Vec::new();
-        cover.overlapping(&Aabb::new(p, p), |j| {
+        cover.containing(&Aabb::new(p, p), &mut self.work, |j| {
             let is_other = entries.iter().all(|entry| entry.owner != j as u32);
             if is_other && !self.survey.transmissive[self.owners[j].index()] {
                 others.push(self.owners[j]);
@@ -212,21 +211,11 @@ impl Search<'_> {
             others.len() < 16
         });
         for other in others {
-            if self.contains(other, p)? {
+            if self.membership.contains(other, p)? {
                 return Some(true);
             }
         }
         Some(false)
-    }
-
-    fn contains(&mut self, id: NodeId, p: DVec3) -> Option<bool> {
-        let cost = self.sizes[id.index()];
-        if cost > self.budget {
-            self.budget = 0;
-            return None;
-        }
-        self.budget -= cost;
-        self.survey.contains(id, p)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use arsc_diagnostics::{Diagnostic, Span, codes::geometry as codes};
 use arsc_ir::{NodeId, NodeKind};
+use rustc_hash::FxHashMap;
 
 use super::Places;
 use super::sampling::{Sampling, Set};
@@ -57,10 +58,10 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
             }
             NodeKind::Union(of) => {
                 void[index] = !of.is_empty() && of.iter().all(|operand| void[operand.index()]);
-                for (&operand, by) in of.iter().zip(absorbed(survey.ir, of, &survey.bounds)) {
+                for (&operand, by) in of.iter().zip(absorbers(survey, of)) {
                     // A hidden light has a finding of its own.
                     let by = by.filter(|_| !survey.emits(operand));
-                    swallowed.note(survey.origin(operand), by.map(|by| survey.origin(of[by])));
+                    swallowed.note(survey.origin(operand), by.map(|by| survey.origin(by)));
                 }
             }
             _ => {}
@@ -74,6 +75,20 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
             .label(by, "all of it is in here")
             .help("remove the operand, or move it out")
     }));
+}
+
+/// For each operand of a union, one inside of which it lies. Equal operands are looked at once.
+fn absorbers(survey: &Survey, of: &[NodeId]) -> Vec<Option<NodeId>> {
+    let mut distinct: Vec<NodeId> = Vec::new();
+    let mut index: FxHashMap<NodeId, usize> = FxHashMap::default();
+    for &operand in of {
+        index.entry(survey.canonical[operand.index()]).or_insert_with(|| {
+            distinct.push(operand);
+            distinct.len() - 1
+        });
+    }
+    let by = absorbed(survey.ir, &distinct, &survey.bounds);
+    of.iter().map(|operand| by[index[&survey.canonical[operand.index()]]].map(|by| distinct[by])).collect()
 }
 
 fn is_empty(survey: &Survey, sampling: &mut Sampling, id: NodeId) -> Option<Certainty> {

@@ -7,10 +7,8 @@ use arsc_ir::{Leaf, NodeId, NodeKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::survey::Survey;
-use crate::share_subtrees::canonical_geometry;
 
 pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
-    let canonical = canonical_geometry(survey.ir);
     let mut reported: FxHashSet<Span> = FxHashSet::default();
     for node in &survey.ir.nodes {
         let (NodeKind::Union(of) | NodeKind::Group(of)) = &node.kind else { continue };
@@ -26,7 +24,7 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
                 continue;
             }
             let origin = survey.origin(operand);
-            if let Some(earlier) = first.insert(canonical[operand.index()], operand)
+            if let Some(earlier) = first.insert(survey.canonical[operand.index()], operand)
                 && reported.insert(origin)
             {
                 findings.push(report(origin, survey.origin(earlier)));

@@ -4,16 +4,56 @@ use arsc_diagnostics::{Diagnostic, Span, codes::geometry as codes};
 use arsc_geometry::{Aabb, DVec3};
 use arsc_ir::{Leaf, Light, NodeId, NodeKind};
 
-use super::survey::Survey;
+use super::survey::{Membership, Survey};
 use super::{Places, is_rendered};
 use crate::bounds::padded;
-use crate::box_tree::BoxTree;
+use crate::box_tree::{BoxTree, Work};
 use crate::drop_operands::Proof;
 
 /// Candidates per light.
 const CANDIDATES: usize = 64;
-/// Leaves looked at for all proofs.
-const CLASSIFICATIONS: usize = 200_000;
+/// Nodes looked at for all proofs.
+const VISITS: usize = 200_000;
+
+/// Opaque solids, to look up what lies in which.
+struct Opaque<'a> {
+    survey: &'a Survey<'a>,
+    solids: &'a [NodeId],
+    tree: BoxTree<'a>,
+    work: Work,
+    membership: Membership<'a>,
+    proof: Proof<'a>,
+}
+
+impl Opaque<'_> {
+    /// A solid that holds the point.
+    fn holder(&mut self, p: DVec3) -> Option<NodeId> {
+        let mut candidates = CANDIDATES;
+        let mut found = None;
+        self.tree.containing(&Aabb::new(p, p), &mut self.work, |j| {
+            candidates -= 1;
+            if self.membership.contains(self.solids[j], p) == Some(true) {
+                found = Some(self.solids[j]);
+            }
+            found.is_none() && candidates > 0
+        });
+        found
+    }
+
+    /// A solid other than the emitting one that holds all of the box.
+    fn cover(&mut self, emitting: NodeId, cell: &Aabb) -> Option<NodeId> {
+        let mut candidates = CANDIDATES;
+        let mut found = None;
+        self.tree.containing(cell, &mut self.work, |j| {
+            candidates -= 1;
+            if self.solids[j] != emitting && self.proof.inside(self.solids[j], cell, 0) {
+                found = Some(self.solids[j]);
+            }
+            found.is_none() && candidates > 0
+        });
+        found
+    }
+}
 
 pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
     let ir = survey.ir;
@@ -26,21 +66,16 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
     }
     let opaque: Vec<NodeId> = survey.objects.iter().copied().filter(|id| !survey.transmissive[id.index()]).collect();
     let boxes: Vec<Aabb> = opaque.iter().map(|id| survey.bounds[id.index()]).collect();
-    let tree = BoxTree::new(&boxes);
-    let holder = |p: DVec3| {
-        let mut candidates = CANDIDATES;
-        let mut found = None;
-        tree.overlapping(&Aabb::new(p, p), |j| {
-            candidates -= 1;
-            if survey.contains(opaque[j], p) == Some(true) {
-                found = Some(opaque[j]);
-            }
-            found.is_none() && candidates > 0
-        });
-        found
+    let mut opaque = Opaque {
+        survey,
+        solids: &opaque,
+        tree: BoxTree::new(&boxes),
+        work: Work::for_searches(ir.nodes.len()),
+        membership: Membership::new(survey),
+        proof: Proof { ir, visits: VISITS },
     };
     if let Some(camera) = &ir.camera
-        && let Some(id) = holder(camera.eye)
+        && let Some(id) = opaque.holder(camera.eye)
     {
         findings.push(
             Diagnostic::new(codes::CAMERA_INSIDE, "the camera is inside of an opaque solid")
@@ -48,7 +83,7 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
                 .help("move the camera out, or cut a room for it"),
         );
     }
-    hidden_lights(survey, &opaque, &boxes, &tree, &holder, findings);
+    hidden_lights(&mut opaque, findings);
 }
 
 fn has_light(survey: &Survey) -> bool {
@@ -57,38 +92,21 @@ fn has_light(survey: &Survey) -> bool {
     (0..ir.nodes.len() as u32).map(NodeId).any(|id| lights(ir.kind(id)) || survey.emits(id))
 }
 
-fn hidden_lights(
-    survey: &Survey,
-    opaque: &[NodeId],
-    boxes: &[Aabb],
-    tree: &BoxTree,
-    holder: &dyn Fn(DVec3) -> Option<NodeId>,
-    findings: &mut Vec<Diagnostic>,
-) {
-    let ir = survey.ir;
+fn hidden_lights(opaque: &mut Opaque, findings: &mut Vec<Diagnostic>) {
+    let survey = opaque.survey;
     let mut hidden: Places<Span> = Places::new();
-    for &member in ir.kind(ir.root).children() {
+    for &member in survey.ir.kind(survey.ir.root).children() {
         if let Some(p) = point_light(survey, member) {
-            hidden.note(survey.origin(member), holder(p).map(|by| survey.origin(by)));
+            hidden.note(survey.origin(member), opaque.holder(p).map(|by| survey.origin(by)));
         }
     }
-    let mut proof = Proof { ir, classifications: CLASSIFICATIONS };
     for &emitting in survey.objects.iter().chain(&survey.surfaces) {
-        let NodeKind::Leaf(leaf) = ir.kind(emitting) else { continue };
-        if !survey.emits(emitting) {
-            continue;
+        let NodeKind::Leaf(leaf) = survey.ir.kind(emitting) else { continue };
+        if survey.emits(emitting) {
+            let cell = padded(&extent(survey, emitting, leaf));
+            let by = if cell.is_finite() { opaque.cover(emitting, &cell) } else { None };
+            hidden.note(survey.origin(emitting), by.map(|by| survey.origin(by)));
         }
-        let cell = padded(&extent(survey, emitting, leaf));
-        let mut by = None;
-        if cell.is_finite() {
-            tree.overlapping(&cell, |j| {
-                if opaque[j] != emitting && boxes[j].contains_box(&cell) && proof.inside(opaque[j], &cell, 0) {
-                    by = Some(opaque[j]);
-                }
-                by.is_none()
-            });
-        }
-        hidden.note(survey.origin(emitting), by.map(|by| survey.origin(by)));
     }
     findings.extend(hidden.all_found().map(|(origin, by)| {
         Diagnostic::new(codes::HIDDEN_LIGHT, "a light is inside of an opaque solid")

@@ -5,8 +5,8 @@ use arsc_geometry::{Aabb, DVec3};
 use arsc_ir::{Leaf, NodeId, NodeKind};
 
 use super::sampling::roberts;
-use super::survey::Survey;
-use crate::box_tree::BoxTree;
+use super::survey::{Membership, Survey};
+use crate::box_tree::{BoxTree, Work};
 
 /// Pairs of boxes looked at, per object.
 const PAIRS: usize = 16;
@@ -24,7 +24,8 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
         .copied()
         .filter(|id| survey.transmissive[id.index()])
         .collect();
-    overlaps(survey, &independent, findings);
+    let mut lint = Lint { survey, membership: Membership::new(survey), found: 0, findings };
+    lint.overlaps(&independent, &|id: &NodeId| Some(id.0));
     for node in &survey.ir.nodes {
         if let NodeKind::Union(of) = &node.kind {
             let bsdf = |id: &NodeId| match survey.ir.kind(*id) {
@@ -35,46 +36,52 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
             };
             let media: Vec<NodeId> = of.iter().copied().filter(|id| bsdf(id).is_some()).collect();
             if media.windows(2).any(|pair| bsdf(&pair[0]) != bsdf(&pair[1])) {
-                overlaps_unlike(survey, &media, &bsdf, findings);
+                lint.overlaps(&media, &bsdf);
             }
         }
     }
 }
 
-fn overlaps(survey: &Survey, solids: &[NodeId], findings: &mut Vec<Diagnostic>) {
-    overlaps_unlike(survey, solids, &|id: &NodeId| Some(id.0), findings);
+struct Lint<'a> {
+    survey: &'a Survey<'a>,
+    membership: Membership<'a>,
+    found: usize,
+    findings: &'a mut Vec<Diagnostic>,
 }
 
-/// Pairs of solids with a common point, unless both are of one class.
-fn overlaps_unlike(
-    survey: &Survey,
-    solids: &[NodeId],
-    class: &dyn Fn(&NodeId) -> Option<u32>,
-    findings: &mut Vec<Diagnostic>,
-) {
-    let boxes: Vec<Aabb> = solids.iter().map(|id| survey.bounds[id.index()]).collect();
-    let tree = BoxTree::new(&boxes);
-    for (i, id) in solids.iter().enumerate() {
-        let mut pairs = PAIRS;
-        tree.overlapping(&boxes[i], |j| {
-            pairs -= 1;
-            let room = || findings.iter().filter(|f| f.code == codes::OVERLAPPING_DIELECTRICS).count() < FINDINGS;
-            if j < i && class(id) != class(&solids[j]) && room() && common_point(survey, *id, solids[j]).is_some() {
-                findings.push(report(survey, solids[j], *id));
+impl Lint<'_> {
+    /// Pairs of solids with a common point, unless both are of one class.
+    fn overlaps(&mut self, solids: &[NodeId], class: &dyn Fn(&NodeId) -> Option<u32>) {
+        let boxes: Vec<Aabb> = solids.iter().map(|id| self.survey.bounds[id.index()]).collect();
+        let tree = BoxTree::new(&boxes);
+        let mut work = Work::for_searches(solids.len());
+        for (i, id) in solids.iter().enumerate() {
+            let mut pairs = PAIRS;
+            tree.overlapping(&boxes[i], &mut work, |j| {
+                pairs -= 1;
+                if j < i && class(id) != class(&solids[j]) && self.common_point(*id, solids[j]).is_some() {
+                    self.findings.push(report(self.survey, solids[j], *id));
+                    self.found += 1;
+                }
+                pairs > 0 && self.found < FINDINGS
+            });
+            if self.found >= FINDINGS || self.membership.is_spent() {
+                return;
             }
-            pairs > 0
-        });
+        }
     }
-}
 
-fn common_point(survey: &Survey, a: NodeId, b: NodeId) -> Option<DVec3> {
-    let cell = survey.bounds[a.index()].intersection(&survey.bounds[b.index()]);
-    if !cell.is_finite() || cell.is_empty() {
-        return None;
+    fn common_point(&mut self, a: NodeId, b: NodeId) -> Option<DVec3> {
+        let cell = self.survey.bounds[a.index()].intersection(&self.survey.bounds[b.index()]);
+        if !cell.is_finite() || cell.is_empty() {
+            return None;
+        }
+        let mut contains = |id: NodeId, p: DVec3| self.membership.contains(id, p) == Some(true);
+        // The middle of the points' box keeps clear of touching faces.
+        (0..POINTS)
+            .map(|n| cell.min + cell.extent() * (DVec3::splat(0.05) + roberts(n) * 0.9))
+            .find(|&p| contains(a, p) && contains(b, p))
     }
-    let in_both = |p: &DVec3| survey.contains(a, *p) == Some(true) && survey.contains(b, *p) == Some(true);
-    // The middle of the points' box keeps clear of touching faces.
-    (0..POINTS).map(|n| cell.min + cell.extent() * (DVec3::splat(0.05) + roberts(n) * 0.9)).find(in_both)
 }
 
 fn report(survey: &Survey, first: NodeId, second: NodeId) -> Diagnostic {

@@ -8,9 +8,12 @@ use crate::bound_unbounded::contexts;
 use crate::bounds::{bounds, place};
 use crate::drop_operands::{Value, value_of};
 use crate::separate_media::transmissive;
+use crate::share_subtrees::canonical_geometry;
 
 /// Deeper trees have no answer.
 const MAX_DEPTH: usize = 1000;
+/// Nodes looked at for all membership tests of one lint.
+const MEMBERSHIP_VISITS: u64 = 3_000_000;
 
 pub(super) struct Survey<'a> {
     pub ir: &'a Ir,
@@ -22,6 +25,8 @@ pub(super) struct Survey<'a> {
     pub objects: Vec<NodeId>,
     /// Open surfaces of the scene.
     pub surfaces: Vec<NodeId>,
+    /// For each node the first one with the same geometry, whatever the materials are.
+    pub canonical: Vec<NodeId>,
 }
 
 impl<'a> Survey<'a> {
@@ -42,7 +47,15 @@ impl<'a> Survey<'a> {
                 _ => objects.push(member),
             }
         }
-        Survey { transmissive: transmissive(ir), ir, bounds, values, objects, surfaces }
+        Survey {
+            transmissive: transmissive(ir),
+            canonical: canonical_geometry(ir),
+            ir,
+            bounds,
+            values,
+            objects,
+            surfaces,
+        }
     }
 
     pub fn origin(&self, id: NodeId) -> Span {
@@ -66,38 +79,6 @@ impl<'a> Survey<'a> {
         material.bsdf.is_some_and(|bsdf| matches!(self.ir.bsdfs[bsdf as usize], Bsdf::Dielectric { .. }))
     }
 
-    /// Whether a point is in a solid; `None` when the tree is too deep or a map too extreme.
-    pub fn contains(&self, id: NodeId, p: DVec3) -> Option<bool> {
-        self.contains_below(id, p, 0)
-    }
-
-    fn contains_below(&self, id: NodeId, p: DVec3, depth: usize) -> Option<bool> {
-        if depth > MAX_DEPTH {
-            return None;
-        }
-        if !self.bounds[id.index()].contains(p) {
-            return Some(false);
-        }
-        let any = |of: &[NodeId], wanted: bool| -> Option<bool> {
-            for &operand in of {
-                if self.contains_below(operand, p, depth + 1)? == wanted {
-                    return Some(true);
-                }
-            }
-            Some(false)
-        };
-        match self.ir.kind(id) {
-            NodeKind::Leaf(leaf) => place(leaf, &DAffine3::IDENTITY).map(|placed| placed.contains(p)),
-            NodeKind::Union(of) => any(of, true),
-            NodeKind::Intersection(of) => any(of, false).map(|outside| !outside),
-            NodeKind::Difference(of) => {
-                let inside = self.contains_below(of[0], p, depth + 1)?;
-                Some(inside && !any(&of[1..], true)?)
-            }
-            _ => None,
-        }
-    }
-
     /// The solid leaves below a node, in order; `None` if more than `limit`.
     pub fn leaves(&self, id: NodeId, limit: usize) -> Option<Vec<NodeId>> {
         let mut leaves = Vec::new();
@@ -114,5 +95,57 @@ impl<'a> Survey<'a> {
             }
         }
         (leaves.len() <= limit).then_some(leaves)
+    }
+}
+
+/// Whether points are in solids, answered as long as the budget lasts.
+pub(super) struct Membership<'a> {
+    survey: &'a Survey<'a>,
+    visits_left: u64,
+}
+
+impl<'a> Membership<'a> {
+    pub fn new(survey: &'a Survey<'a>) -> Membership<'a> {
+        Membership { survey, visits_left: MEMBERSHIP_VISITS }
+    }
+
+    pub fn is_spent(&self) -> bool {
+        self.visits_left == 0
+    }
+
+    /// `None` when the tree is too deep, a map too extreme, or the budget spent.
+    pub fn contains(&mut self, id: NodeId, p: DVec3) -> Option<bool> {
+        self.contains_below(id, p, 0)
+    }
+
+    fn contains_below(&mut self, id: NodeId, p: DVec3, depth: usize) -> Option<bool> {
+        if depth > MAX_DEPTH || self.is_spent() {
+            return None;
+        }
+        self.visits_left -= 1;
+        let survey = self.survey;
+        if !survey.bounds[id.index()].contains(p) {
+            return Some(false);
+        }
+        match survey.ir.kind(id) {
+            NodeKind::Leaf(leaf) => place(leaf, &DAffine3::IDENTITY).map(|placed| placed.contains(p)),
+            NodeKind::Union(of) => self.any(of, true, p, depth),
+            NodeKind::Intersection(of) => self.any(of, false, p, depth).map(|outside| !outside),
+            NodeKind::Difference(of) => {
+                let inside = self.contains_below(of[0], p, depth + 1)?;
+                Some(inside && !self.any(&of[1..], true, p, depth)?)
+            }
+            _ => None,
+        }
+    }
+
+    /// Some operand answers as wanted.
+    fn any(&mut self, of: &[NodeId], wanted: bool, p: DVec3, depth: usize) -> Option<bool> {
+        for &operand in of {
+            if self.contains_below(operand, p, depth + 1)? == wanted {
+                return Some(true);
+            }
+        }
+        Some(false)
     }
 }
