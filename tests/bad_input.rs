@@ -113,6 +113,21 @@ fn endless_programs_are_stopped() {
     expect(&check(b"let x = fold(0..1000, \"a\", fn(s, i) => s + s)"), 1, &[]);
 }
 
+/// Quadratic searches would take minutes here.
+#[test]
+fn solids_that_all_overlap_are_checked_quickly() {
+    const QUICK: Duration = Duration::from_secs(30);
+    for solid in
+        ["sphere(radius: 1)", "sphere(radius: 1 + 0.001 * i)", "box(size: (1, 1, 1)) |> translate(x: 1e-6 * i)"]
+    {
+        let start = Instant::now();
+        let script = format!("scene {{ for i in 0..50_000 {{ {solid} }} }}");
+        let folder = tempfile::tempdir().expect("a folder");
+        expect(&arsc(folder.path(), &["check", "-", "--allow", "warnings"], script.as_bytes()), 0, &[]);
+        assert!(start.elapsed() < QUICK, "{solid} took {:?}", start.elapsed());
+    }
+}
+
 #[test]
 fn numbers_that_are_none_are_refused() {
     expect(&check(b"let x = 1/0"), 1, &["E02", "1/0"]);

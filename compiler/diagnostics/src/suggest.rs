@@ -56,5 +56,7 @@ mod tests {
         for other in ["cube", "x", "", "spherical_harmonics"] {
             assert_eq!(closest(other, words), None, "{other}");
         }
+        assert_eq!(closest("rotate", ["rotate_y", "rotate_x"]), Some("rotate_x"), "the first in the alphabet");
+        assert_eq!(closest("q", ["pi"]), None);
     }
 }

@@ -9,7 +9,6 @@ mod code;
 mod eval;
 mod reference;
 mod registry;
-mod suggest;
 mod types;
 mod value;
 

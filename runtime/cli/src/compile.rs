@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use arsc_diagnostics::SourceMap;
 use arsc_driver::{Compiled, LoadError, Loader, Options};
 use arsc_ir::Ir;
 use sha2::{Digest, Sha256};
@@ -10,11 +11,13 @@ use crate::args::SceneArgs;
 use crate::bug;
 use crate::exit::Exit;
 use crate::files::{ScriptFolder, read_script};
-use crate::report;
+use crate::report::{self, Findings};
 
 /// A script that compiled.
 pub struct Scene {
     pub ir: Ir,
+    /// Where findings of later stages point.
+    pub sources: SourceMap,
     pub folder: ScriptFolder,
     /// The file's name without extension; `scene` for standard input.
     pub name: String,
@@ -52,11 +55,11 @@ fn with(args: &SceneArgs, quiet: bool, stages: Stages) -> Result<Scene, Exit> {
     let compiled = stages(&shown, text, &folder, &options);
     let hash = hash(&compiled, &args.set);
     if compiled.has_errors() || !quiet {
-        report::human(&compiled);
+        report::human(Findings::from(&compiled));
     }
     let has_errors = compiled.has_errors();
     match compiled.ir {
-        Some(ir) if !has_errors => Ok(Scene { ir, folder, name: name(args), hash }),
+        Some(ir) if !has_errors => Ok(Scene { ir, sources: compiled.sources, folder, name: name(args), hash }),
         _ => Err(Exit::Findings),
     }
 }
@@ -65,7 +68,7 @@ fn with(args: &SceneArgs, quiet: bool, stages: Stages) -> Result<Scene, Exit> {
 fn unreadable(shown: &str, error: &LoadError, options: &Options) -> Exit {
     match arsc_driver::unreadable(shown, error, options) {
         Some(compiled) => {
-            report::human(&compiled);
+            report::human(Findings::from(&compiled));
             Exit::Findings
         }
         None => {

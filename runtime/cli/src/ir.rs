@@ -9,6 +9,7 @@ use arsc_opt::{Options, PASSES, PassReport, optimise_observed};
 use crate::args::SceneArgs;
 use crate::compile;
 use crate::exit::Exit;
+use crate::report::{self, Findings};
 
 /// Of a column of the table.
 const WIDTH: usize = 16;
@@ -60,9 +61,7 @@ pub fn run(args: &Args) -> Exit {
     let options = Options { optimise: !args.no_optimise, lint: false, ..Options::default() };
     let optimised = optimise_observed(scene.ir, &options, &mut show);
     if !optimised.diagnostics.is_empty() {
-        for finding in &optimised.diagnostics {
-            eprintln!("error: {}: {}", finding.code, finding.message);
-        }
+        report::human(Findings { diagnostics: &optimised.diagnostics, sources: &scene.sources });
         return Exit::Findings;
     }
     if args.passes {

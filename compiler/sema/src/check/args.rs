@@ -1,12 +1,11 @@
 //! Which argument goes to which parameter.
 
 use arsc_diagnostics::codes::sema as codes;
-use arsc_diagnostics::{Diagnostic, Span};
+use arsc_diagnostics::{Diagnostic, Span, closest};
 use arsc_syntax::ast;
 
 use super::Checker;
 use super::names::with_suggestion;
-use crate::suggest::closest;
 
 /// One argument: what was piped in comes first.
 #[derive(Clone, Copy)]

@@ -1,14 +1,13 @@
 //! Expressions.
 
 use arsc_diagnostics::codes::sema as codes;
-use arsc_diagnostics::{Diagnostic, Span};
+use arsc_diagnostics::{Diagnostic, Span, closest};
 use arsc_syntax::ast::{self, ExprKind};
 
 use super::names::{Meaning, with_suggestion};
 use super::{Checker, Typed};
 use crate::code::{Code, FnId};
 use crate::registry::{BuiltinId, PRELUDE, choices};
-use crate::suggest::closest;
 use crate::types::Type;
 use crate::value::{Closure, Value};
 

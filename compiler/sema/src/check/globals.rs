@@ -1,14 +1,13 @@
 //! Top-level `let` and `param`, and values given to params from outside.
 
 use arsc_diagnostics::codes::sema as codes;
-use arsc_diagnostics::{Diagnostic, Span};
+use arsc_diagnostics::{Diagnostic, Span, closest};
 use arsc_syntax::ast::{self, ExprKind, PatternKind};
 
 use super::names::DefKind;
 use super::{Checker, Progress};
 use crate::Setting;
 use crate::code::{Allowed, Code, Entry, Global, GlobalId};
-use crate::suggest::closest;
 use crate::types::Type;
 
 /// Values of params given from outside, checked: which param, and the code of its value.

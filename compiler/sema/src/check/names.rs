@@ -3,13 +3,12 @@
 use indexmap::IndexMap;
 
 use arsc_diagnostics::codes::sema as codes;
-use arsc_diagnostics::{Applicability, Diagnostic, Span};
+use arsc_diagnostics::{Applicability, Diagnostic, Span, closest};
 use arsc_syntax::ast::{self, ImportNames, ImportPath, ItemKind};
 
 use super::Checker;
 use crate::code::{FnId, GlobalId};
 use crate::registry::{BuiltinId, Constant, PRELUDE};
-use crate::suggest::closest;
 
 #[derive(Default)]
 pub(super) struct ModuleScope {

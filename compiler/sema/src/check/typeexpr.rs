@@ -1,14 +1,13 @@
 //! Types as they are written.
 
 use arsc_diagnostics::codes::sema as codes;
-use arsc_diagnostics::{Diagnostic, Span};
+use arsc_diagnostics::{Diagnostic, Span, closest};
 use arsc_syntax::ast::{self, TypeKind};
 
 use super::convert::record;
 use super::names::{DefKind, Meaning, with_suggestion};
 use super::scope::Context;
 use super::{Checker, Progress};
-use crate::suggest::closest;
 use crate::types::{NAMED, Type};
 
 /// A `type` item.

@@ -124,7 +124,7 @@ fn from_table(m: &mut Machine<'_>, args: &[Value], site: &Site, kind: SpectrumKi
             let known: Vec<&str> = table.columns.iter().map(String::as_str).collect();
             let mut failure =
                 *site.fail_arg(1, codes::TABLE, format!("the table has no column `{wanted}`"), "named here");
-            failure.help = crate::suggest::closest(wanted, known).map(|near| format!("did you mean `{near}`?"));
+            failure.help = arsc_diagnostics::closest(wanted, known).map(|near| format!("did you mean `{near}`?"));
             failure
         })?
     } else {

@@ -42,11 +42,11 @@ impl<'a> From<&'a Compiled> for Findings<'a> {
 }
 
 /// Shows findings to whoever looks at standard error.
-pub fn human(compiled: &Compiled) {
+pub fn human(findings: Findings) {
     let stderr = io::stderr();
     let style = Style::of(&stderr);
     // Nobody is left to be told that standard error cannot be written.
-    let _ = human::write(&mut stderr.lock(), &style, &[Findings::from(compiled)]);
+    let _ = human::write(&mut stderr.lock(), &style, &[findings]);
 }
 
 /// How many findings of each kind there are.
