@@ -47,8 +47,11 @@ pub(crate) fn lint(ir: &Ir, options: &Options) -> Vec<Diagnostic> {
     findings
 }
 
-/// The script renders the scene and writes a picture.
+/// The script renders the scene and writes a picture, as one with a camera does that says nothing else.
 fn is_rendered(ir: &Ir) -> bool {
+    if ir.actions.is_empty() {
+        return ir.camera.is_some();
+    }
     let any = |wanted: fn(&Action) -> bool| ir.actions.iter().any(|at| wanted(&at.action));
     any(|action| matches!(action, Action::PathTrace { .. }))
         && any(|action| matches!(action, Action::WriteExr { .. } | Action::WritePng { .. }))
