@@ -18,7 +18,7 @@ pub struct Ply;
 impl MeshReader for Ply {
     fn read(&self, source: &mut dyn BufRead, bytes: u64) -> Result<TriangleMesh, MeshError> {
         let mut source = source;
-        let header = Parser::<Vertex>::new().read_header(&mut source).map_err(MeshError::Ply)?;
+        let header = Parser::<Vertex>::new().read_header(&mut source).map_err(broken)?;
         let vertex = header.elements.get("vertex").ok_or(MeshError::Missing("element `vertex`"))?;
         for (name, what) in [("x", "property `x`"), ("y", "property `y`"), ("z", "property `z`")] {
             if !is_scalar(vertex, name) {
@@ -38,6 +38,21 @@ impl MeshReader for Ply {
             }
         }
         mesh.finish()
+    }
+}
+
+/// A line of an ASCII file that is not what the header promises; the reader's own words are those of its grammar.
+fn not_an(element: &ElementDef, line: &str, error: &Error) -> Error {
+    let shown: String = line.trim().chars().take(60).collect();
+    Error::new(error.kind(), format!("`{shown}` is no `{}` as the header has it", element.name))
+}
+
+/// What the reader says, without the tables of its grammar on the lines below.
+fn broken(error: Error) -> MeshError {
+    let text = error.to_string();
+    match text.split_once('\n') {
+        Some((first, _)) => MeshError::Ply(Error::new(error.kind(), first.to_owned())),
+        None => MeshError::Ply(error),
     }
 }
 
@@ -72,12 +87,13 @@ fn each<E: PropertyAccess>(
         let read = match header.encoding {
             Encoding::Ascii => {
                 line.clear();
-                next_line(source, &mut line).and_then(|()| parser.read_ascii_element(&line, element))
+                next_line(source, &mut line).map_err(MeshError::Ply)?;
+                parser.read_ascii_element(&line, element).map_err(|error| not_an(element, &line, &error))
             }
             Encoding::BinaryBigEndian => parser.read_big_endian_element(&mut source, element),
             Encoding::BinaryLittleEndian => parser.read_little_endian_element(&mut source, element),
         };
-        take(read.map_err(MeshError::Ply)?)?;
+        take(read.map_err(broken)?)?;
     }
     Ok(())
 }
@@ -261,6 +277,10 @@ mod tests {
         assert!(matches!(claim("property float z", "property float w"), MeshError::Missing("property `z`")));
         assert!(matches!(claim("element vertex", "element point"), MeshError::Missing("element `vertex`")));
         assert!(matches!(read(b"not a mesh"), Err(MeshError::Ply(_))));
+        let MeshError::Ply(cause) = claim("0.5 2 1 7", "0.5 nan 1 7") else { panic!("a vertex of words") };
+        assert_eq!(cause.to_string(), "`0.5 nan 1 7` is no `vertex` as the header has it");
+        let MeshError::Ply(cause) = read(b"not a mesh\n").unwrap_err() else { panic!("no header") };
+        assert!(!cause.to_string().contains('\n'), "{cause}");
         assert!(matches!(read(b""), Err(MeshError::Ply(_))));
     }
 
