@@ -122,13 +122,18 @@ fn refusals_come_before_the_render_and_name_the_reason() {
     let file = folder.path().join("file");
     std::fs::write(&file, "in the way").unwrap();
     let blocked = file.join("out");
-    let cases: [(&[&str], &str); 6] = [
+    let photograph = folder.path().join("ball.jpg");
+    let cases: [(&[&str], &str); 10] = [
         (&["-o", blocked.to_str().unwrap()], "cannot use the output folder"),
         (&["--resolution", "0x7"], "WIDTHxHEIGHT"),
         (&["--crop", "0,0,99,99"], "does not lie in the image"),
         (&["--samples", "0"], "samples"),
         (&["-j", "0"], "threads"),
         (&["--set", "albedo"], "NAME=VALUE"),
+        (&["-o", photograph.to_str().unwrap()], "not as .jpg"),
+        (&["--crop", "-1,0,5,5"], "expected x0,y0,x1,y1"),
+        (&["--seed", "-1"], "'-1' for '--seed"),
+        (&["--max-depth", "0"], "0 is not in 1..="),
     ];
     for (arguments, reason) in cases {
         let out = folder.path().join("unused");
@@ -145,6 +150,15 @@ fn refusals_come_before_the_render_and_name_the_reason() {
         assert!(stderr(&run).contains(reason), "{arguments:?}: {}", stderr(&run));
     }
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "in the way");
+}
+
+#[test]
+fn a_library_is_not_rendered() {
+    let (folder, script) = scene("parts.arsl", "fn wheel(r: float) -> solid { cylinder(r, 0.1) }");
+    let out = folder.path().join("out");
+    let run = arsc(&["render", &script, "-o", out.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(2), "{}", stderr(&run));
+    assert!(stderr(&run).contains("parts.arsl has no `scene { … }`") && !out.exists(), "{}", stderr(&run));
 }
 
 #[test]

@@ -19,6 +19,7 @@ use std::sync::Arc;
 use arsc_diagnostics::{Diagnostic, Severity, SourceFile, SourceId, SourceMap, codes};
 use arsc_ir::Ir;
 use arsc_sema::{Module, Setting};
+use arsc_syntax::ast::{Item, ItemKind};
 
 /// The stack that a compilation needs at its limits, in bytes.
 pub const STACK: usize = 512 << 20;
@@ -55,6 +56,8 @@ impl Default for Options {
 pub struct Compiled {
     /// `None` when an error stopped it.
     pub ir: Option<Ir>,
+    /// The root script has a scene of its own; else it is a library.
+    pub has_scene: bool,
     /// Sorted by source and position; lint levels and `allow` applied.
     pub diagnostics: Vec<Diagnostic>,
     pub sources: SourceMap,
@@ -105,7 +108,7 @@ pub fn unreadable(name: &str, error: &LoadError, options: &Options) -> Option<Co
     };
     let mut sources = SourceMap::default();
     sources.add(SourceFile::new(name, ""));
-    Some(Compiled { ir: None, diagnostics: vec![diagnostic], sources, passes: Vec::new() })
+    Some(Compiled { ir: None, has_scene: false, diagnostics: vec![diagnostic], sources, passes: Vec::new() })
 }
 
 /// Everything before the optimiser.
@@ -139,7 +142,9 @@ impl Front {
         let place = |d: &Diagnostic| d.primary_span().map_or((SourceId(0), 0, 0), |s| (s.source, s.start, s.end));
         diagnostics.sort_by(|a, b| (place(a), a.code.id()).cmp(&(place(b), b.code.id())));
         diagnostics.dedup();
-        Compiled { ir: self.ir, diagnostics, sources: self.sources, passes }
+        let is_scene = |item: &Item| matches!(item.kind, ItemKind::Scene(_));
+        let has_scene = self.modules.last().is_some_and(|root| root.ast.items.iter().any(is_scene));
+        Compiled { ir: self.ir, has_scene, diagnostics, sources: self.sources, passes }
     }
 }
 

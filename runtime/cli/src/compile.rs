@@ -16,6 +16,7 @@ use crate::report::{self, Findings};
 /// A script that compiled.
 pub struct Scene {
     pub ir: Ir,
+    has_scene: bool,
     /// Where findings of later stages point.
     pub sources: SourceMap,
     pub folder: ScriptFolder,
@@ -25,9 +26,15 @@ pub struct Scene {
     pub hash: String,
 }
 
-/// Compiles. What there is to say is printed on standard error; the exit says why there is no scene.
+/// Compiles. What there is to say is printed on standard error; the exit says why there is no scene. A library is
+/// nothing to render or to probe.
 pub fn compile(args: &SceneArgs, quiet: bool) -> Result<Scene, Exit> {
-    with(args, quiet, arsc_driver::compile)
+    let scene = with(args, quiet, arsc_driver::compile)?;
+    if scene.has_scene {
+        return Ok(scene);
+    }
+    eprintln!("error: {} has no `scene {{ … }}`", shown(args));
+    Err(Exit::CouldNotRun)
 }
 
 /// Goes only as far as the IR that the script describes, before the optimiser.
@@ -39,7 +46,7 @@ type Stages = fn(&str, Arc<str>, &dyn Loader, &Options) -> Compiled;
 
 fn with(args: &SceneArgs, quiet: bool, stages: Stages) -> Result<Scene, Exit> {
     bug::stage("compile");
-    let shown = if args.scene.as_os_str() == "-" { "<stdin>".into() } else { args.scene.display().to_string() };
+    let shown = shown(args);
     let mut options = Options::default();
     options.settings.clone_from(&args.set);
     options.lint_levels = args.lints.levels();
@@ -57,11 +64,18 @@ fn with(args: &SceneArgs, quiet: bool, stages: Stages) -> Result<Scene, Exit> {
     if compiled.has_errors() || !quiet {
         report::human(Findings::from(&compiled));
     }
-    let has_errors = compiled.has_errors();
+    let (has_errors, has_scene) = (compiled.has_errors(), compiled.has_scene);
     match compiled.ir {
-        Some(ir) if !has_errors => Ok(Scene { ir, sources: compiled.sources, folder, name: name(args), hash }),
+        Some(ir) if !has_errors => {
+            Ok(Scene { ir, has_scene, sources: compiled.sources, folder, name: name(args), hash })
+        }
         _ => Err(Exit::Findings),
     }
+}
+
+/// What people know the script by.
+fn shown(args: &SceneArgs) -> String {
+    if args.scene.as_os_str() == "-" { "<stdin>".into() } else { args.scene.display().to_string() }
 }
 
 /// A script that is no text is the author's business, one that cannot be opened is not.

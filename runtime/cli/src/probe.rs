@@ -157,7 +157,7 @@ fn parse_rays(text: &str) -> Result<Vec<ProbeRay>, String> {
     let mut rays = Vec::new();
     let mut may_be_header = true;
     for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let is_header = may_be_header && line.trim_start().starts_with(|c: char| c.is_ascii_alphabetic());
+        let is_header = may_be_header && line.split(',').all(|name| name.trim().parse::<f64>().is_err());
         may_be_header = false;
         if !is_header {
             rays.push(parse_ray(line).map_err(|error| format!("line {}: {error}", number + 1))?);
@@ -204,6 +204,8 @@ mod tests {
             ("0,0,0,0,0,1\n\nox,oy,oz,dx,dy,dz\n", "line 3: `ox` is not a number"),
             ("0,0,0,0,0,0\n", "line 1: a ray needs"),
             ("0,0,nan,0,0,1\n", "line 1: a ray needs"),
+            ("inf,0,0,0,0,1\n", "line 1: a ray needs"),
+            ("O,0,0,0,0,1\n", "line 1: `O` is not a number"),
             ("0,0,0,inf,0,1\n", "line 1: a ray needs"),
             ("0,0,0,0,0,1,\n", "line 1: `` is not a number"),
         ] {

@@ -36,15 +36,15 @@ impl From<Csg> for arsc_accel::Strategy {
 #[derive(clap::Args, Clone, Debug)]
 pub struct RenderSettings {
     /// Threads [default: as many as the machine has]
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
 
     /// Samples per pixel
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
     pub samples: Option<u32>,
 
     /// Largest number of scattering events of a path
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), allow_negative_numbers = true)]
     pub max_depth: Option<u32>,
 
     /// Size of the picture in pixels
@@ -52,11 +52,11 @@ pub struct RenderSettings {
     pub resolution: Option<[u32; 2]>,
 
     /// Renders only these pixels, from the upper left corner, the end excluded; the rest stays black
-    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = args::crop)]
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = args::crop, allow_hyphen_values = true)]
     pub crop: Option<[u32; 4]>,
 
     /// Seed of all random numbers
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<u64>,
 
     /// How CSG is traced
@@ -145,6 +145,12 @@ fn script_seed(ir: &Ir) -> u64 {
 
 /// Finds out before the render whether its pictures can be written, and whether the one asked for is among them.
 fn check_output(output: &Output, scene: &Scene) -> Result<(), Exit> {
+    if let Output::Folder(folder) = output
+        && let Some(kind) = foreign_picture(folder)
+    {
+        eprintln!("error: pictures are written as .exr or .png, not as .{kind}");
+        return Err(Exit::CouldNotRun);
+    }
     let actions = arsc_assembly::actions(&scene.ir, &scene.name);
     let names = actions.iter().filter_map(|action| match action {
         Action::WriteExr { path } | Action::WritePng { path } => Some(path),
@@ -165,6 +171,13 @@ fn check_output(output: &Output, scene: &Scene) -> Result<(), Exit> {
         return Err(Exit::CouldNotRun);
     }
     Ok(())
+}
+
+/// The extension of a path that means a picture of a kind that is not written, unless it is a folder.
+fn foreign_picture(path: &Path) -> Option<String> {
+    let kind = path.extension()?.to_str()?.to_ascii_lowercase();
+    let is_known = ["jpg", "jpeg", "tif", "tiff", "hdr", "pfm", "bmp", "gif", "webp", "ppm", "tga"].contains(&&*kind);
+    (is_known && !path.is_dir()).then_some(kind)
 }
 
 fn conclude(args: &Args, outcome: &Outcome) -> Exit {
