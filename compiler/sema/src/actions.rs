@@ -43,14 +43,16 @@ fn name(action: &Action) -> &'static str {
     }
 }
 
-/// Checks a sequence; a sequence that writes nothing is a lint.
+/// Checks a sequence; a sequence that writes nothing is a lint. An empty one stands for the renderer's own.
 pub fn check(actions: &[ActionAt], span: Span, lints: &mut Vec<Diagnostic>) -> Result<(), Box<Diagnostic>> {
     let mut stack = vec![Cell::Scene];
     for at in actions {
         apply(&mut stack, at)?;
     }
     no_picture_twice(actions)?;
-    if !actions.iter().any(|at| matches!(at.action, Action::WriteExr { .. } | Action::WritePng { .. })) {
+    if !actions.is_empty()
+        && !actions.iter().any(|at| matches!(at.action, Action::WriteExr { .. } | Action::WritePng { .. }))
+    {
         let lint =
             Diagnostic::new(codes::NO_OUTPUT, "the action sequence writes no file").label(span, "no output here");
         lints.push(lint.help("add `write_exr(\"name.exr\")` after `path_trace`"));

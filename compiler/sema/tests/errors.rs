@@ -35,6 +35,10 @@ fn suggestions() {
     );
     for (text, help) in [
         ("let a = sphere().translate(x: 1)", "functions are applied by `|>`: `value |> translate(…)`"),
+        (
+            "let a = cube() |> color(1)",
+            "colours are materials: `shape |> with(lambert(rgb(0.8, 0.1, 0.1)))`, with `lambert` of std.material",
+        ),
         ("let a = cube() |> translate([1, 2, 3])", "write a vector: `(x, y, z)`"),
         (
             "camera perspective(eye: (0, 0, 5), target: (0, 0, 0))",
@@ -204,6 +208,7 @@ fn action_stacks() {
     expect("actions { path_trace(); swap(); drop(); write_exr(\"a.exr\") }", &[]);
     expect("actions { path_trace(); dup(); tone_map(); write_png(\"a.png\"); drop(); write_exr(\"b.exr\") }", &[]);
     expect("actions { drop(); drop() }", &[("E0301", "drop()")]);
+    expect("actions { }", &[]);
     expect("actions { path_trace() }", &[("W0111", "actions { path_trace() }")]);
     expect("import std.action { standard_render }\nactions { standard_render(\"a\") }", &[]);
     expect(

@@ -186,6 +186,12 @@ impl<'a> Checker<'a> {
             self.report(diagnostic.help(help));
             return;
         }
+        if matches!(name, "color" | "colour" | "pigment") {
+            let help =
+                "colours are materials: `shape |> with(lambert(rgb(0.8, 0.1, 0.1)))`, with `lambert` of std.material";
+            self.report(diagnostic.help(help));
+            return;
+        }
         let module = &self.scopes[self.cx.module];
         let builtin = self.registry.names(PRELUDE).map(|name| -> &str { name });
         let candidates = self.cx.names().chain(module.defs.keys().map(String::as_str)).chain(builtin);
