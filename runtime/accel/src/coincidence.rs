@@ -14,15 +14,38 @@ pub struct Event {
     pub face: u8,
 }
 
+/// Which leaves a point is in, and what the expression makes of it.
+pub trait States {
+    fn get(&self, slot: u32) -> bool;
+    fn flip(&mut self, slot: u32);
+    fn value(&self) -> bool;
+}
+
+/// States whose value is computed each time.
+pub struct Plain<'a, E> {
+    pub states: &'a mut [bool],
+    pub eval: E,
+}
+
+impl<E: Fn(&[bool]) -> bool> States for Plain<'_, E> {
+    fn get(&self, slot: u32) -> bool {
+        self.states[slot as usize]
+    }
+
+    fn flip(&mut self, slot: u32) {
+        let state = &mut self.states[slot as usize];
+        *state = !*state;
+    }
+
+    fn value(&self) -> bool {
+        (self.eval)(self.states)
+    }
+}
+
 /// Flips the states of a cluster. Returns the value after it, and the index of the owner's event if the value changed.
-pub fn settle(
-    cluster: &[Event],
-    before: bool,
-    states: &mut [bool],
-    eval: impl Fn(&[bool]) -> bool,
-) -> (bool, Option<usize>) {
+pub fn settle(cluster: &[Event], before: bool, states: &mut impl States) -> (bool, Option<usize>) {
     flip(cluster, states);
-    let after = eval(states);
+    let after = states.value();
     if after == before {
         return (after, None);
     }
@@ -32,14 +55,13 @@ pub fn settle(
     let slots = flipped_slots(cluster);
     let index = |slot: u32| cluster.iter().position(|event| event.slot == slot);
     for &slot in &slots {
-        let i = slot as usize;
-        states[i] = !states[i];
-        let from_after = eval(states);
-        states[i] = !states[i];
+        states.flip(slot);
+        let from_after = states.value();
+        states.flip(slot);
         flip(cluster, states);
-        states[i] = !states[i];
-        let from_before = eval(states);
-        states[i] = !states[i];
+        states.flip(slot);
+        let from_before = states.value();
+        states.flip(slot);
         flip(cluster, states);
         if from_after != after || from_before != before {
             return (after, index(slot));
@@ -51,8 +73,8 @@ pub fn settle(
     }
     let (mut value, mut owner) = (false, slots[0]);
     for &slot in &slots {
-        states[slot as usize] = !states[slot as usize];
-        let next = eval(states);
+        states.flip(slot);
+        let next = states.value();
         if next != value {
             (value, owner) = (next, slot);
         }
@@ -63,11 +85,8 @@ pub fn settle(
     (after, index(owner))
 }
 
-fn flip(cluster: &[Event], states: &mut [bool]) {
-    for event in cluster {
-        let state = &mut states[event.slot as usize];
-        *state = !*state;
-    }
+fn flip(cluster: &[Event], states: &mut impl States) {
+    cluster.iter().for_each(|event| states.flip(event.slot));
 }
 
 /// Leaves crossed an odd number of times, ascending.
@@ -90,7 +109,7 @@ mod tests {
     fn owner(start: [bool; 3], slots: &[u32], f: fn(&[bool]) -> bool) -> (bool, Option<u32>) {
         let mut states = start;
         let cluster: Vec<Event> = slots.iter().map(|&slot| Event { t: 1.0, slot, face: 0 }).collect();
-        let (after, index) = settle(&cluster, f(&start), &mut states, f);
+        let (after, index) = settle(&cluster, f(&start), &mut Plain { states: &mut states, eval: f });
         for (i, state) in states.iter().enumerate() {
             let odd = slots.iter().filter(|&&s| s as usize == i).count() % 2 == 1;
             assert_eq!(*state, start[i] != odd);

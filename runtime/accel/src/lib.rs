@@ -6,6 +6,7 @@
 
 mod cells;
 mod coincidence;
+mod counted;
 mod error;
 mod expression;
 mod frame;

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use crate::coincidence::{Event, settle};
+use crate::coincidence::{Event, Plain, States, settle};
 use crate::expression::{Expression, eval};
 use crate::solid::{SolidModel, SolidRay};
 
@@ -48,17 +48,17 @@ pub fn transitions(solid: &SolidModel, ray: &SolidRay, mut visit: impl FnMut(Tra
             events.extend(after.map(|(t, face)| Event { t, slot, face }));
         }
         events.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.slot.cmp(&b.slot)));
-        let value = |states: &[bool]| eval(tokens, |leaf| states[leaf as usize]);
-        let start = value(states);
+        let mut states = Plain { states, eval: |states: &[bool]| eval(tokens, |leaf| states[leaf as usize]) };
+        let start = states.value();
         let mut inside = start;
         let mut rest = &events[..];
         while let Some(first) = rest.first() {
             let together = rest.iter().take_while(|event| event.t <= first.t + solid.tolerance).count();
             let (cluster, later) = rest.split_at(together);
-            let (after, owner) = settle(cluster, inside, states, value);
+            let (after, owner) = settle(cluster, inside, &mut states);
             if let Some(owner) = owner {
                 let Event { t, slot, face } = cluster[owner];
-                let flipped = states[slot as usize] != after;
+                let flipped = states.get(slot) != after;
                 let shared = cluster.len() > 1;
                 if !visit(Transition { t, leaf: slot, face, entering: after, flipped, shared }) {
                     break;

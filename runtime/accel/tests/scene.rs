@@ -54,6 +54,27 @@ fn sphere_is_hit_from_outside_and_inside() {
     }
 }
 
+/// No cut separates the shells, so one cell holds hundreds of leaves, all of which a ray from within crosses.
+#[test]
+fn many_crossings_in_one_cell() {
+    const N: u32 = 400;
+    let shells: Vec<CsgLeaf> = (0..N).map(|i| sphere(DVec3::ZERO, 10.0 + 1e-4 * f64::from(i), i)).collect();
+    let mut leaves = shells.clone();
+    leaves.push(sphere(DVec3::ZERO, 9.0, N));
+    let all = Csg::Union((0..N).map(Csg::Leaf).collect());
+    let none = Csg::Intersection((0..N).map(Csg::Leaf).collect());
+    let outermost = 10.0 + 1e-4 * f64::from(N - 1);
+    for (tree, t, material) in [(all.clone(), outermost, N - 1), (none, 10.0, 0), (minus(all, Csg::Leaf(N)), 9.0, N)] {
+        for scene in scenes(solid(tree, leaves.clone())) {
+            for dir in [DVec3::X, DVec3::new(1.0, 2.0, -2.0) / 3.0] {
+                let ray = Ray { origin: DVec3::ZERO, dir, t_max: f64::INFINITY };
+                let hit = scene.intersect(&ray).expect("the way out");
+                assert!((hit.t - t).abs() < 1e-9 && hit.material.0 == material, "{} {:?}", hit.t, hit.material);
+            }
+        }
+    }
+}
+
 #[test]
 fn walls_show_the_subtrahend_and_face_outwards() {
     let leaves = vec![sphere(DVec3::ZERO, 1.0, 0), sphere(DVec3::new(-1.0, 0.0, 0.0), 0.5, 1)];

@@ -4,9 +4,13 @@ use arsc_geometry::Crossings;
 use smallvec::SmallVec;
 
 use crate::cells::Code;
-use crate::coincidence::{Event, settle};
+use crate::coincidence::{Event, Plain, States, settle};
+use crate::counted::Counted;
 use crate::expression::eval;
 use crate::tree::Transition;
+
+/// From so many crossings on, values are kept up to date instead of computed anew at each.
+const MANY_EVENTS: usize = 32;
 
 /// The stretch of a ray that a cell answers for: clusters that begin in `(low, high]`.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +37,7 @@ pub fn transitions(
     source: &mut impl Leaves,
     window: &Window,
     events: &mut Vec<Event>,
-    mut visit: impl FnMut(Transition) -> bool,
+    visit: impl FnMut(Transition) -> bool,
 ) {
     if let ([leaf], Code::Table(table)) = (leaves, code) {
         return single(*leaf, table & 1 == 1, source, window, visit);
@@ -54,24 +58,41 @@ pub fn transitions(
         return;
     }
     events.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.slot.cmp(&b.slot)));
-    let value = |states: &[bool]| match code {
-        Code::Table(table) => table >> index(states) & 1 == 1,
-        Code::Tokens(tokens) => eval(tokens, |slot| states[slot as usize]),
-    };
-    let mut inside = value(&states);
-    let mut rest = &events[..];
+    match code {
+        Code::Table(table) => {
+            let eval = |states: &[bool]| table >> index(states) & 1 == 1;
+            walk(leaves, events, window, Plain { states: &mut states, eval }, visit);
+        }
+        Code::Tokens(tokens) if events.len() < MANY_EVENTS => {
+            let eval = |states: &[bool]| eval(tokens, |slot| states[slot as usize]);
+            walk(leaves, events, window, Plain { states: &mut states, eval }, visit);
+        }
+        Code::Tokens(tokens) => walk(leaves, events, window, Counted::new(tokens, &states), visit),
+    }
+}
+
+/// Goes along sorted events, cluster by cluster.
+fn walk(
+    leaves: &[u32],
+    events: &[Event],
+    window: &Window,
+    mut states: impl States,
+    mut visit: impl FnMut(Transition) -> bool,
+) {
+    let mut inside = states.value();
+    let mut rest = events;
     while let Some(first) = rest.first() {
         if first.t > window.high {
             return;
         }
         let together = rest.iter().take_while(|event| event.t <= first.t + window.tolerance).count();
         let (cluster, later) = rest.split_at(together);
-        let (after, owner) = settle(cluster, inside, &mut states, value);
+        let (after, owner) = settle(cluster, inside, &mut states);
         if let Some(owner) = owner
             && first.t > window.low
         {
             let Event { t, slot, face } = cluster[owner];
-            let flipped = states[slot as usize] != after;
+            let flipped = states.get(slot) != after;
             let shared = cluster.len() > 1;
             if !visit(Transition { t, leaf: leaves[slot as usize], face, entering: after, flipped, shared }) {
                 return;
