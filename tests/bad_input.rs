@@ -48,10 +48,10 @@ fn check(input: &[u8]) -> Output {
 }
 
 #[test]
-fn an_empty_file_is_an_empty_module() {
-    expect(&check(b""), 0, &[]);
-    expect(&check(b"\xEF\xBB\xBF"), 0, &[]);
-    expect(&check(b"\n\n// nothing\n"), 0, &[]);
+fn an_empty_file_declares_nothing() {
+    expect(&check(b""), 1, &["W0113"]);
+    expect(&check(b"\xEF\xBB\xBF"), 1, &["W0113"]);
+    expect(&check(b"\n\n// nothing\n"), 1, &["W0113"]);
 }
 
 #[test]

@@ -16,7 +16,8 @@ pub use reference::reference;
 
 use std::sync::Arc;
 
-use arsc_diagnostics::{Diagnostic, SourceId};
+use arsc_diagnostics::codes::sema as codes;
+use arsc_diagnostics::{Diagnostic, SourceId, Span};
 use arsc_ir::Ir;
 use arsc_syntax::ast;
 
@@ -102,6 +103,9 @@ pub struct Analysed {
 pub fn analyse(modules: &[Module], assets: &dyn Assets, options: &Options) -> Analysed {
     let Some(root) = modules.last() else { return Analysed { ir: None, diagnostics: Vec::new() } };
     let check::Checked { program, settings, mut diagnostics } = check::check(modules, &options.params);
+    if root.ast.items.is_empty() && !options.check_only {
+        diagnostics.push(nothing_declared(root.source));
+    }
     if options.check_only || diagnostics.iter().any(Diagnostic::is_error) {
         return Analysed { ir: None, diagnostics };
     }
@@ -115,4 +119,10 @@ pub fn analyse(modules: &[Module], assets: &dyn Assets, options: &Options) -> An
     diagnostics.append(&mut machine.diagnostics);
     diagnostics.extend(failures);
     Analysed { ir, diagnostics }
+}
+
+fn nothing_declared(source: SourceId) -> Diagnostic {
+    Diagnostic::new(codes::EMPTY_SCRIPT, "the script declares nothing")
+        .label(Span::new(source, 0, 0), "no scene, no function, no value in this file")
+        .help("begin with a scene: `scene { sphere() }`")
 }

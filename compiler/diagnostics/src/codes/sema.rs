@@ -42,4 +42,5 @@ codes! {
     lint ZERO_POWER_LIGHT "W0110" zero_power_light: "a light emits nothing";
     lint NO_OUTPUT "W0111" no_output: "an action sequence writes no file";
     lint EMPTY_SCENE "W0112" empty_scene: "a scene contains nothing";
+    lint EMPTY_SCRIPT "W0113" empty_script: "a script declares nothing";
 }
