@@ -186,7 +186,8 @@ fn an_interrupt_writes_what_has_been_rendered() {
         .unwrap();
     std::thread::sleep(Duration::from_secs(2));
     let start = Instant::now();
-    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    // The shell's own `kill`: a bare Debian has no program of that name.
+    Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
     let run = child.wait_with_output().unwrap();
     assert_eq!(run.status.code(), Some(130), "{}", stderr(&run));
     assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
