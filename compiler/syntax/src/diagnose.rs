@@ -236,7 +236,9 @@ impl Context<'_> {
     /// What stands at the top level and is no item.
     fn top_level(&self) -> Option<Slip> {
         let word = leading_word(self.slice);
-        if !self.top_level || self.at > self.slice.len() - self.slice.trim_start().len() {
+        // Spaces that the grammar does not know, a no-break space say, may stand before the word.
+        let start = self.slice.len() - self.slice.trim_start().len();
+        if !self.top_level || self.at > start {
             return None;
         }
         let message = "expected a declaration at the top level";
@@ -249,15 +251,15 @@ impl Context<'_> {
                 message,
                 "misspelt?",
                 &format!("items begin with a keyword such as `{item}`"),
-                (0, word.len(), item),
+                (start, start + word.len(), item),
             );
         }
-        if self.slice[word.len()..].trim_start().starts_with('=') && !word.is_empty() {
+        if self.slice[start + word.len()..].trim_start().starts_with('=') && !word.is_empty() {
             return Slip::replacing(
                 "a name is bound with `let`",
                 "assignment",
                 "write `let name = value`",
-                (0, 0, "let "),
+                (start, start, "let "),
             );
         }
         Slip::new(message, "not a declaration", "shapes and lights go into `scene { … }`, values into `let name = …`")

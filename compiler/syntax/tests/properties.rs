@@ -209,3 +209,11 @@ fn many_errors_are_all_reported() {
     let parsed = check_all(&"let = 1\n".repeat(10_000));
     assert_eq!(parsed.diagnostics.len(), 10_000);
 }
+
+/// Spaces of Unicode that the grammar does not know, before and behind words; found by chance.
+#[test]
+fn foreign_spaces_are_read_without_harm() {
+    for text in ["\u{a0}z\u{cb2}\u{11338}.", "\u{a0}sceen {}", "\u{2003}x = 1", "let\u{a0}x = 1", "let x =\u{a0}1"] {
+        check_all(text);
+    }
+}
