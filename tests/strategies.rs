@@ -249,7 +249,7 @@ fn check(seed: u64) -> Tally {
     let geometry = SceneGeometry { solids: vec![case.solid.clone()], ..SceneGeometry::default() };
     let build = |strategy| Scene::build(geometry.clone(), BuildOptions { strategy }).unwrap();
     let (tree, local) = (build(Strategy::Tree), build(Strategy::Local));
-    let place = |leaf: &CsgLeaf| Placed::new(leaf.shape, leaf.world_from_object).unwrap();
+    let place = |leaf: &CsgLeaf| Placed::new(leaf.shape.clone(), leaf.world_from_object).unwrap();
     let placed: Vec<Placed> = case.solid.leaves.iter().map(place).collect();
     let mut tally = Tally::default();
     for i in 0..RAYS {

@@ -39,7 +39,7 @@ pub(crate) fn leaf_bounds(leaf: &Leaf, world_from_parent: &DAffine3) -> Aabb {
 /// singular in double precision: then nothing is proved about the leaf.
 pub(crate) fn place(leaf: &Leaf, world_from_parent: &DAffine3) -> Option<Placed> {
     let Leaf::Solid { shape, parent_from_object, .. } = leaf else { return None };
-    Placed::new(*shape, *world_from_parent * *parent_from_object).ok()
+    Placed::new(shape.clone(), *world_from_parent * *parent_from_object).ok()
 }
 
 /// A length that rounding near this box stays far below: 1e-9 of its largest finite coordinate.

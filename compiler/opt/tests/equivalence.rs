@@ -100,7 +100,7 @@ fn holds(ir: &Ir, id: arsc_ir::NodeId, p: DVec3) -> bool {
     use arsc_ir::{Leaf, NodeKind};
     let any = |of: &[arsc_ir::NodeId]| of.iter().any(|&operand| holds(ir, operand, p));
     match ir.kind(id) {
-        NodeKind::Leaf(leaf) => match **leaf {
+        NodeKind::Leaf(leaf) => match &**leaf {
             Leaf::Solid { shape, parent_from_object, .. } => {
                 shape.contains(parent_from_object.inverse().transform_point3(p))
             }

@@ -11,7 +11,7 @@ pub struct Event {
     pub t: f64,
     /// Position in the leaf list that the states belong to; ascending positions are ascending leaves.
     pub slot: u32,
-    pub face: u8,
+    pub face: u32,
 }
 
 /// Which leaves a point is in, and what the expression makes of it.

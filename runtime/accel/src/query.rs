@@ -161,7 +161,8 @@ pub struct Scratch {
 
 impl Default for Scratch {
     fn default() -> Scratch {
-        let cache = RootCache { keys: [0; RootCache::SIZE], roots: [Crossings::NONE; RootCache::SIZE], len: 0 };
+        let cache =
+            RootCache { keys: [0; RootCache::SIZE], roots: [const { Crossings::NONE }; RootCache::SIZE], len: 0 };
         Scratch { events: Vec::new(), collected: Vec::new(), cache }
     }
 }
@@ -178,12 +179,12 @@ impl Scratch {
         let cache = &mut self.cache;
         let filled = cache.len.min(RootCache::SIZE);
         if let Some(i) = cache.keys[..filled].iter().position(|&k| k == key) {
-            return cache.roots[i];
+            return cache.roots[i].clone();
         }
         let roots = solve();
         let i = cache.len % RootCache::SIZE;
         cache.keys[i] = key;
-        cache.roots[i] = roots;
+        cache.roots[i] = roots.clone();
         cache.len += 1;
         roots
     }

@@ -157,7 +157,9 @@ impl Scene {
         let placed = &member.model.leaves[leaf as usize];
         match &member.frame {
             None => Some(placed.clone()),
-            Some(frame) => Placed::new(*placed.shape(), frame.world_from_object * *placed.world_from_object()).ok(),
+            Some(frame) => {
+                Placed::new(placed.shape().clone(), frame.world_from_object * *placed.world_from_object()).ok()
+            }
         }
     }
 

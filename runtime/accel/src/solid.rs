@@ -43,7 +43,7 @@ impl SolidModel {
         check_leaves(&solid.tree, solid.leaves.len(), index)?;
         let mut leaves = Vec::with_capacity(solid.leaves.len());
         for (i, leaf) in solid.leaves.iter().enumerate() {
-            let placed = Placed::new(leaf.shape, leaf.world_from_object);
+            let placed = Placed::new(leaf.shape.clone(), leaf.world_from_object);
             leaves.push(placed.map_err(|source| AccelError::Leaf { solid: index, leaf: i as u32, source })?);
         }
         let expression = Expression::from_csg(&solid.tree);

@@ -12,7 +12,7 @@ pub struct Transition {
     /// Parameter of the [`SolidRay`].
     pub t: f64,
     pub leaf: u32,
-    pub face: u8,
+    pub face: u32,
     /// The ray is in the solid after it.
     pub entering: bool,
     /// The leaf's outward normal points into the solid: the wall of a subtraction.

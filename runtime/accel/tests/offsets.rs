@@ -55,11 +55,12 @@ fn convex_solids_show_no_acne() {
         Shape::Cone { base_radius: 1.0, top_radius: 0.3, height: 1.5 },
     ];
     for scale in SCALES {
-        for shape in shapes {
+        for shape in &shapes {
             for squeeze in [DVec3::ONE, DVec3::new(-1.0, 0.4, 1.7)] {
                 let matrix = rotation(&mut rng) * DMat3::from_diagonal(squeeze * scale);
                 let map = DAffine3 { matrix3: matrix, translation: vector(&mut rng) * 3.0 * scale };
-                for scene in scenes(SceneGeometry { solids: vec![one(shape, map)], ..SceneGeometry::default() }) {
+                for scene in scenes(SceneGeometry { solids: vec![one(shape.clone(), map)], ..SceneGeometry::default() })
+                {
                     let mut hits = 0;
                     for _ in 0..2000 {
                         let from = map.translation + vector(&mut rng).normalize() * 8.0 * scale;

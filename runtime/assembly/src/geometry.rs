@@ -98,7 +98,7 @@ impl Lowering<'_> {
                     return Err(AssemblyError::NotNormal("a surface is an operand of a Boolean"));
                 };
                 let material = material_index(*material)?;
-                leaves.push(CsgLeaf { shape: *shape, world_from_object: *parent_from_object, material });
+                leaves.push(CsgLeaf { shape: shape.clone(), world_from_object: *parent_from_object, material });
                 Ok(Csg::Leaf(leaves.len() as u32 - 1))
             }
             NodeKind::Union(operands) => all(operands).map(Csg::Union),

@@ -112,7 +112,7 @@ fn solid_bounds(tree: &Csg, solid: &Solid) -> Aabb {
     match tree {
         Csg::Leaf(leaf) => {
             let leaf = &solid.leaves[*leaf as usize];
-            Placed::new(leaf.shape, leaf.world_from_object).map_or(Aabb::EVERYTHING, |placed| *placed.bounds())
+            Placed::new(leaf.shape.clone(), leaf.world_from_object).map_or(Aabb::EVERYTHING, |placed| *placed.bounds())
         }
         Csg::Union(operands) => operands.iter().map(of).fold(Aabb::EMPTY, |hull, b| hull.union(&b)),
         Csg::Intersection(operands) => operands.iter().map(of).fold(Aabb::EVERYTHING, |hull, b| hull.intersection(&b)),

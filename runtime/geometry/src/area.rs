@@ -11,7 +11,7 @@ use crate::{Placed, Shape, SurfacePoint, cone, cuboid, sphere, torus};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaPoint {
     pub point: SurfacePoint,
-    pub face: u8,
+    pub face: u32,
     /// Density per unit of world area.
     pub pdf_area: f64,
 }
@@ -55,7 +55,7 @@ impl Shape {
     }
 
     /// A point uniform over the surface, with its face; `None` for unbounded shapes. `u` in [0, 1)².
-    fn sample(&self, u: [f64; 2]) -> Option<(DVec3, u8)> {
+    fn sample(&self, u: [f64; 2]) -> Option<(DVec3, u32)> {
         let (areas, count) = self.face_areas();
         let total: f64 = areas[..count].iter().sum();
         let mut rest = u[0] * total;
@@ -67,7 +67,7 @@ impl Shape {
         // What is left of the choice of the face is uniform again.
         let inner = if count > 0 && areas[face] > 0.0 { (rest / areas[face]).clamp(0.0, 1.0) } else { 0.0 };
         let u = [inner, u[1]];
-        let face = face as u8;
+        let face = face as u32;
         let p = match *self {
             Shape::Sphere { radius } => sphere::sample(radius, u),
             Shape::Box { min, max } => cuboid::sample(min, max, face, u),

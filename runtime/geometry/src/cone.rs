@@ -6,12 +6,12 @@ use glam::{DVec2, DVec3};
 
 use crate::{Crossings, LocalPoint};
 
-const SIDE: u8 = 0;
-const BOTTOM: u8 = 1;
-const TOP: u8 = 2;
+const SIDE: u32 = 0;
+const BOTTOM: u32 = 1;
+const TOP: u32 = 2;
 
 /// Where `0 <= z <= height`: entry and exit with their faces; unbounded for rays across, `None` outside.
-fn slab(height: f64, origin: DVec3, dir: DVec3) -> Option<(f64, u8, f64, u8)> {
+fn slab(height: f64, origin: DVec3, dir: DVec3) -> Option<(f64, u32, f64, u32)> {
     if dir.z == 0.0 {
         return (0.0..=height).contains(&origin.z).then_some((f64::NEG_INFINITY, SIDE, f64::INFINITY, SIDE));
     }
@@ -51,7 +51,7 @@ pub(crate) fn cylinder_crossings(radius: f64, height: f64, origin: DVec3, dir: D
 }
 
 /// The slab's interval cut by the side's.
-fn intersect(caps: (f64, u8, f64, u8), side: (f64, f64)) -> Crossings {
+fn intersect(caps: (f64, u32, f64, u32), side: (f64, f64)) -> Crossings {
     let (z0, f0, z1, f1) = caps;
     let (t0, f0) = if side.0 > z0 { (side.0, SIDE) } else { (z0, f0) };
     let (t1, f1) = if side.1 < z1 { (side.1, SIDE) } else { (z1, f1) };
@@ -99,7 +99,7 @@ fn not_positive(a: f64, b: f64, c: f64, z0: f64, z1: f64) -> Option<(f64, f64)> 
 }
 
 /// Also serves cylinders (`base == top`); `height` may be infinite then.
-pub(crate) fn surface(base: f64, top: f64, height: f64, p: DVec3, face: u8) -> LocalPoint {
+pub(crate) fn surface(base: f64, top: f64, height: f64, p: DVec3, face: u32) -> LocalPoint {
     let azimuth = p.y.atan2(p.x);
     let (sin, cos) = azimuth.sin_cos();
     if face != SIDE {
@@ -127,7 +127,7 @@ pub(crate) fn areas(base: f64, top: f64, height: f64) -> [f64; 3] {
     [pi * (base + top) * (base - top).hypot(height), pi * base * base, pi * top * top]
 }
 
-pub(crate) fn sample(base: f64, top: f64, height: f64, face: u8, u: [f64; 2]) -> DVec3 {
+pub(crate) fn sample(base: f64, top: f64, height: f64, face: u32, u: [f64; 2]) -> DVec3 {
     let (sin, cos) = (TAU * u[0]).sin_cos();
     let (radius, z) = match face {
         BOTTOM => (base * u[1].sqrt(), 0.0),

@@ -15,7 +15,7 @@ pub(crate) fn crossings(min: DVec3, max: DVec3, origin: DVec3, dir: DVec3) -> Cr
             }
             continue;
         }
-        let face = 2 * axis as u8;
+        let face = 2 * axis as u32;
         let (low, high) = ((min[axis] - o) / d, (max[axis] - o) / d);
         let (near, far) = if d > 0.0 { ((low, face), (high, face + 1)) } else { ((high, face + 1), (low, face)) };
         if near.0 > t0 {
@@ -28,8 +28,8 @@ pub(crate) fn crossings(min: DVec3, max: DVec3, origin: DVec3, dir: DVec3) -> Cr
     Crossings::interval(t0, f0, t1, f1)
 }
 
-pub(crate) fn surface(min: DVec3, max: DVec3, p: DVec3, face: u8) -> LocalPoint {
-    let axis = usize::from(face / 2);
+pub(crate) fn surface(min: DVec3, max: DVec3, p: DVec3, face: u32) -> LocalPoint {
+    let axis = (face / 2) as usize;
     let (u_axis, v_axis) = ((axis + 1) % 3, (axis + 2) % 3);
     let high = face % 2 == 1;
     let mut on = p.clamp(min, max);
@@ -50,8 +50,8 @@ pub(crate) fn areas(min: DVec3, max: DVec3) -> [f64; 6] {
     [x, x, y, y, z, z]
 }
 
-pub(crate) fn sample(min: DVec3, max: DVec3, face: u8, u: [f64; 2]) -> DVec3 {
-    let axis = usize::from(face / 2);
+pub(crate) fn sample(min: DVec3, max: DVec3, face: u32, u: [f64; 2]) -> DVec3 {
+    let axis = (face / 2) as usize;
     let mut p = min;
     p[(axis + 1) % 3] += u[0] * (max - min)[(axis + 1) % 3];
     p[(axis + 2) % 3] += u[1] * (max - min)[(axis + 2) % 3];

@@ -109,11 +109,11 @@ impl Placed {
         let unit = ROUNDINGS * f64::EPSILON;
         let constant = object_from_world.translation.abs().max_element() + shape.magnitude();
         let placed = Placed {
+            direct: Direct::new(&shape, &world_from_object, &object_from_world),
+            bounds: bounds(&shape, &world_from_object, &object_from_world),
             shape,
             world_from_object,
             object_from_world,
-            direct: Direct::new(&shape, &world_from_object, &object_from_world),
-            bounds: bounds(&shape, &world_from_object, &object_from_world),
             volume_scale: world_from_object.matrix3.determinant().abs(),
             error_slope: unit * out * back,
             error_floor: unit * out * constant,
@@ -165,7 +165,7 @@ impl Placed {
     }
 
     /// The surface point at `p`, which lies on that face up to rounding: projected onto it, with its frame.
-    pub fn surface(&self, p: DVec3, face: u8) -> SurfacePoint {
+    pub fn surface(&self, p: DVec3, face: u32) -> SurfacePoint {
         let local = self.shape.surface(self.object_from_world.transform_point3(p), face);
         let p = self.world_from_object.transform_point3(local.p);
         let n = self.world_normal(local.n);

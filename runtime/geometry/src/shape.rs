@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::{Aabb, Crossings, cone, cuboid, half_space, sphere, torus};
 
 /// A closed solid in object space. Sizes are positive and finite; the compiler guarantees it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// Centre at the origin.
     Sphere { radius: f64 },
@@ -121,7 +121,7 @@ impl Shape {
     }
 
     /// The surface point nearest to `p` (which lies close to that face) with its frame.
-    pub fn surface(&self, p: DVec3, face: u8) -> LocalPoint {
+    pub fn surface(&self, p: DVec3, face: u32) -> LocalPoint {
         match *self {
             Shape::Sphere { radius } => sphere::surface(radius, p),
             Shape::Box { min, max } => cuboid::surface(min, max, p, face),

@@ -70,7 +70,7 @@ fn crossings_agree_with_membership() {
     let (mut checked, mut skipped, mut crossed) = (0u32, 0u32, 0u32);
     for shape in shapes() {
         for _ in 0..12 {
-            let placed = Placed::new(shape, random_map(&mut rng)).unwrap();
+            let placed = Placed::new(shape.clone(), random_map(&mut rng)).unwrap();
             let size = placed.world_from_object().matrix3.x_axis.length();
             for _ in 0..300 {
                 let (origin, dir) = random_line(&placed, &mut rng);
@@ -118,7 +118,7 @@ fn surface_points_are_on_the_surface_with_outward_normals() {
     let mut rng = Pcg64::seed_from_u64(2);
     for shape in shapes() {
         for _ in 0..40 {
-            let placed = Placed::new(shape, random_map(&mut rng)).unwrap();
+            let placed = Placed::new(shape.clone(), random_map(&mut rng)).unwrap();
             let size = placed.world_from_object().matrix3.x_axis.length();
             for _ in 0..40 {
                 let (origin, dir) = random_line(&placed, &mut rng);
@@ -147,7 +147,7 @@ fn bounds_hold_the_shape_tightly() {
     let mut rng = Pcg64::seed_from_u64(3);
     for shape in shapes().into_iter().filter(Shape::is_bounded) {
         for _ in 0..10 {
-            let placed = Placed::new(shape, random_map(&mut rng)).unwrap();
+            let placed = Placed::new(shape.clone(), random_map(&mut rng)).unwrap();
             let bounds = *placed.bounds();
             let mut hull = Aabb::EMPTY;
             for _ in 0..4000 {
@@ -168,7 +168,7 @@ fn classification_is_conservative_and_useful() {
     for shape in shapes() {
         let (mut pure, mut decided) = (0, 0);
         for _ in 0..20 {
-            let placed = Placed::new(shape, random_map(&mut rng)).unwrap();
+            let placed = Placed::new(shape.clone(), random_map(&mut rng)).unwrap();
             let map = *placed.world_from_object();
             let size = map.matrix3.x_axis.length();
             for _ in 0..60 {
@@ -203,7 +203,7 @@ fn area_and_its_density_agree() {
     let mut rng = Pcg64::seed_from_u64(5);
     for shape in shapes().into_iter().filter(Shape::is_bounded) {
         for _ in 0..4 {
-            let placed = Placed::new(shape, random_map(&mut rng)).unwrap();
+            let placed = Placed::new(shape.clone(), random_map(&mut rng)).unwrap();
             let n = 20_000;
             let mut sum = 0.0;
             for _ in 0..n {
@@ -247,6 +247,6 @@ fn bad_input_is_an_error() {
     let unit = Shape::Sphere { radius: 1.0 };
     assert!(Placed::new(Shape::Sphere { radius: 0.0 }, DAffine3::IDENTITY).is_err());
     assert!(Placed::new(Shape::Sphere { radius: f64::NAN }, DAffine3::IDENTITY).is_err());
-    assert!(Placed::new(unit, DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0))).is_err());
+    assert!(Placed::new(unit.clone(), DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0))).is_err());
     assert!(Placed::new(unit, DAffine3::from_translation(DVec3::splat(f64::INFINITY))).is_err());
 }

@@ -43,8 +43,8 @@ pub fn walls(ir: &Ir, origin: DVec3, dir: DVec3, tolerance: f64) -> Vec<Wall> {
 fn collect(ir: &Ir, id: NodeId, map: &DAffine3, origin: DVec3, dir: DVec3, lines: &mut Vec<Line>) {
     match ir.kind(id) {
         NodeKind::Leaf(leaf) => {
-            if let Leaf::Solid { shape, parent_from_object, material } = **leaf {
-                let placed = Placed::new(shape, *map * parent_from_object).expect("leaves can be placed");
+            if let Leaf::Solid { shape, parent_from_object, material } = &**leaf {
+                let placed = Placed::new(shape.clone(), *map * *parent_from_object).expect("leaves can be placed");
                 let material = material.expect("every leaf has a material").0;
                 lines.push(Line { material, crossings: placed.crossings(origin, dir) });
             }

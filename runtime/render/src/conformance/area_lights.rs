@@ -80,7 +80,7 @@ fn leaves_of_every_shape() {
         (Shape::Torus { major: 1.0, minor: 0.4 }, DVec3::new(0.3, -1.6, 1.4)),
     ] {
         for map in [DAffine3::IDENTITY, skew()] {
-            let scene = scene_of(Csg::Leaf(0), vec![leaf(shape, map)]);
+            let scene = scene_of(Csg::Leaf(0), vec![leaf(shape.clone(), map)]);
             assert_conforms(&format!("{shape:?}"), &scene, map.transform_point3(eye));
         }
     }
