@@ -1,17 +1,23 @@
 //! Torus about the z axis: ring (minor < major), horn (equal) and spindle (minor > major, lens included).
 //!
 //! A point at distance `ρ` from the axis is inside when `(ρ − major)² + z² <= minor²`. From the line's closest
-//! approach to the centre the quartic `(|p|² + major² − minor²)² = 4 major² ρ²` is depressed. Its roots are bracketed by
-//! those of its derivative and found by safeguarded Newton steps; both ends of the bracket sequence lie outside the
-//! torus, so the number of roots is even whatever the rounding.
+//! approach to the centre the quartic `(|p|² + major² − minor²)² = 4 major² ρ²` is depressed, so its points of inflection are
+//! symmetric and known. Between them, and between the ends of the line's stretch in the torus's bounding sphere and slab, where
+//! it is positive, the curvature has one sign: each piece holds no root, one that brackets itself, or a pair about its
+//! extremum. Signs at the ends of pieces are decided once, so the number of roots is even whatever the rounding.
 
-use std::f64::consts::{FRAC_PI_3, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
 use crate::{Crossings, LocalPoint};
 
-/// `t⁴ + p t² + q t + s`.
+/// Most Newton steps for a root or an extremum; every step that leaves its bracket is a bisection instead.
+const STEPS: usize = 64;
+/// Relative to the torus's outer radius: brackets and errors below this are rounding.
+const ROUNDING: f64 = 1e-15;
+
+/// `t⁴ + p t² + q t + s`, positive outside of the torus.
 struct Quartic {
     p: f64,
     q: f64,
@@ -23,55 +29,127 @@ impl Quartic {
         ((t * t + self.p) * t + self.q) * t + self.s
     }
 
-    fn derivative(&self, t: f64) -> f64 {
+    fn slope(&self, t: f64) -> f64 {
         (4.0 * t * t + 2.0 * self.p) * t + self.q
     }
 
-    /// Real roots of the derivative, ascending.
-    fn critical(&self) -> ([f64; 3], usize) {
-        let (p, q) = (self.p / 2.0, self.q / 4.0);
-        let (third, half) = (p / 3.0, q / 2.0);
-        let discriminant = third * third * third + half * half;
-        if discriminant >= 0.0 {
-            let big = -(half.abs() + discriminant.sqrt()).cbrt().copysign(half);
-            let root = if big == 0.0 { 0.0 } else { big - third / big };
-            return ([root, 0.0, 0.0], 1);
-        }
-        let radius = (-third).sqrt();
-        let angle = (-half / (radius * radius * radius)).clamp(-1.0, 1.0).acos() / 3.0;
-        let at = |k: f64| 2.0 * radius * (angle - 2.0 * FRAC_PI_3 * k).cos();
-        // cos(angle − 2π/3 k) for angle in [0, π/3]: k = 0 largest, k = −1 (that is +2π/3) smallest.
-        ([at(-1.0), at(1.0), at(0.0)], 3)
+    fn curvature(&self, t: f64) -> f64 {
+        12.0 * t * t + 2.0 * self.p
     }
 
-    /// The root between `a` and `b`, where the sign changes; `rising` when positive at `b`.
-    fn root_between(&self, mut a: f64, mut b: f64, rising: bool) -> f64 {
-        let mut t = 0.5 * (a + b);
-        for _ in 0..64 {
-            let value = self.eval(t);
+    /// Where the tangent at `t` is zero.
+    fn newton(&self, t: f64) -> f64 {
+        t - self.eval(t) / self.slope(t)
+    }
+
+    /// The only root between `a` and `b`, sought from `t` on; `rising` when the value is positive at `b`.
+    fn root(&self, mut a: f64, mut b: f64, rising: bool, mut t: f64) -> f64 {
+        if !(t > a && t < b) {
+            t = 0.5 * (a + b);
+        }
+        for _ in 0..STEPS {
+            let (value, slope) = (self.eval(t), self.slope(t));
             if (value > 0.0) == rising {
                 b = t;
             } else {
                 a = t;
             }
-            let next = t - value / self.derivative(t);
-            let next = if next > a && next < b { next } else { 0.5 * (a + b) };
-            if (next - t).abs() <= 1e-15 * (1.0 + t.abs()) {
-                return next;
+            let step = value / slope;
+            let next = t - step;
+            if !(next > a && next < b) {
+                t = 0.5 * (a + b);
+                if b - a <= ROUNDING {
+                    break;
+                }
+                continue;
             }
+            // What a Newton step leaves of an error is its square times half of this ratio.
+            let rest = step * step * self.curvature(t);
             t = next;
+            if rest.abs() <= ROUNDING * slope.abs() {
+                break;
+            }
         }
         t
     }
+
+    /// The two roots, if there are any, between `a` and `b`, where the curvature has the sign `bend` and so has the value at
+    /// both ends.
+    fn pair(&self, a: f64, b: f64, bend: f64, found: &mut impl FnMut(f64)) {
+        let (mut low, mut high) = (a, b);
+        let (fall, rise) = (bend * self.slope(a), bend * self.slope(b));
+        if fall >= 0.0 || rise <= 0.0 {
+            return;
+        }
+        let mut t = a + (b - a) * fall / (fall - rise);
+        for _ in 0..STEPS {
+            let (value, slope, curvature) = (bend * self.eval(t), bend * self.slope(t), bend * self.curvature(t));
+            if value < 0.0 {
+                // On either side, from where the parabola through here is zero.
+                let spread = (slope * slope - 2.0 * value * curvature).max(0.0).sqrt();
+                found(self.root(a, t, bend < 0.0, t - (slope + spread) / curvature));
+                found(self.root(t, b, bend > 0.0, t - (slope - spread) / curvature));
+                return;
+            }
+            // The extremum is on the side that the tangent falls to. Where the tangent stays above zero so does the curve.
+            let end = if slope > 0.0 { low } else { high };
+            if value + slope * (end - t) > 0.0 || high - low <= ROUNDING {
+                return;
+            }
+            if slope > 0.0 {
+                high = t;
+            } else {
+                low = t;
+            }
+            let next = t - slope / curvature;
+            t = if next > low && next < high { next } else { 0.5 * (low + high) };
+        }
+    }
+
+    /// All roots in `(low, high)`, ascending; the value counts as positive at both ends.
+    fn roots(&self, low: f64, high: f64, found: &mut impl FnMut(f64)) {
+        if self.p >= 0.0 {
+            return self.pair(low, high, 1.0, found);
+        }
+        let inflection = (self.p * (-1.0 / 6.0)).sqrt();
+        let (mut start, mut outside) = (low, true);
+        for (end, bend) in [(-inflection, 1.0), (inflection, -1.0), (high, 1.0)] {
+            if end <= start {
+                continue;
+            }
+            let last = end >= high;
+            let end = end.min(high);
+            let positive = last || self.eval(end) > 0.0;
+            if positive != outside {
+                // On outer pieces from the point of inflection: the first step already leads beyond the root, to the side from
+                // which Newton's method does not overshoot.
+                let from = match bend < 0.0 {
+                    true => 0.5 * (start + end),
+                    false if positive => start,
+                    false => end,
+                };
+                found(self.root(start, end, positive, self.newton(from)));
+            } else if positive == (bend > 0.0) {
+                self.pair(start, end, bend, found);
+            }
+            (start, outside) = (end, positive);
+            if last {
+                return;
+            }
+        }
+    }
 }
 
-/// `dir` is unit.
+/// `dir` is unit. A root where the line meets the surface at an angle is exact to some 2⁻⁴⁹ of the outer radius or of
+/// the origin's distance. Lines that enter the tube by less than 2⁻⁴⁶ of its radius, or 2⁻⁵¹ of the outer radius if that is
+/// more, may meet nothing.
 pub(crate) fn crossings(major: f64, minor: f64, origin: DVec3, dir: DVec3) -> Crossings {
     // Unit outer radius: the quartic's terms are then of order one.
     let scale = major + minor;
-    let (major, minor) = (major / scale, minor / scale);
+    let unit = 1.0 / scale;
+    let (major, minor) = (major * unit, minor * unit);
     let middle = -origin.dot(dir);
-    let o = (origin + dir * middle) / scale;
+    let o = (origin + dir * middle) * unit;
     let m = o.length_squared();
     if m >= 1.0 {
         return Crossings::NONE;
@@ -79,7 +157,8 @@ pub(crate) fn crossings(major: f64, minor: f64, origin: DVec3, dir: DVec3) -> Cr
     let reach = (1.0 - m).sqrt();
     let (mut low, mut high) = (-reach, reach);
     if dir.z != 0.0 {
-        let (a, b) = ((-minor - o.z) / dir.z, (minor - o.z) / dir.z);
+        let inverse = 1.0 / dir.z;
+        let (a, b) = ((-minor - o.z) * inverse, (minor - o.z) * inverse);
         low = low.max(a.min(b));
         high = high.min(a.max(b));
     } else if o.z.abs() >= minor {
@@ -88,41 +167,44 @@ pub(crate) fn crossings(major: f64, minor: f64, origin: DVec3, dir: DVec3) -> Cr
     if low >= high {
         return Crossings::NONE;
     }
-    let k = m + (major - minor) * (major + minor);
-    let rr = 4.0 * major * major;
-    let quartic =
-        Quartic { p: 2.0 * k - rr * (1.0 - dir.z * dir.z), q: 2.0 * rr * o.z * dir.z, s: k * k - rr * (m - o.z * o.z) };
-    let mut found = Crossings::NONE;
-    let mut previous = (low, true);
-    let (critical, count) = quartic.critical();
-    for &t in critical[..count].iter().filter(|&&t| t > low && t < high).chain(std::iter::once(&high)) {
-        let positive = t == high || quartic.eval(t) > 0.0;
-        if positive != previous.1 {
-            let root = polished(major, minor, o, dir, quartic.root_between(previous.0, t, positive));
-            if k + root * root >= 0.0 {
-                found.push(root, 0);
-            }
-        }
-        previous = (t, positive);
+    // Squared distance from the axis: a + 2 b t + c t².
+    let (a, b, c) = (m - o.z * o.z, -o.z * dir.z, 1.0 - dir.z * dir.z);
+    let ring = |t: f64| (c * t + 2.0 * b) * t + a;
+    let hole = major - minor;
+    if hole > 0.0 && ring(low).max(ring(high)) <= hole * hole {
+        return Crossings::NONE;
     }
+    let k = m + hole;
+    let rr = 4.0 * major * major;
+    let quartic = Quartic { p: 2.0 * k - rr * c, q: -2.0 * rr * b, s: k * k - rr * a };
+    let mut found = Crossings::NONE;
+    let mut last = low;
+    quartic.roots(low, high, &mut |t| {
+        // Polishing must not swap the two roots of a line that grazes.
+        let t = polished(major, minor, o, dir, t).max(last);
+        last = t;
+        // The quartic is zero on the inner side of a spindle too, where the solid goes on.
+        if k + t * t >= 0.0 {
+            found.push(t, 0);
+        }
+    });
     if found.len() % 2 == 1 {
         // Rounding split a pair at a pole of a spindle: the line grazes it.
         return Crossings::NONE;
     }
-    found.remapped(middle / scale, scale)
+    found.remapped(middle * unit, scale)
 }
 
 /// One Newton step on the distance to the tube, which is better conditioned than the quartic for thin tori.
 fn polished(major: f64, minor: f64, o: DVec3, dir: DVec3, t: f64) -> f64 {
     let p = o + dir * t;
     let ring = p.truncate().length();
-    let tube = (ring - major).hypot(p.z);
-    if ring == 0.0 || tube == 0.0 {
-        return t;
-    }
-    let slope = ((ring - major) * p.truncate().dot(dir.truncate()) / ring + p.z * dir.z) / tube;
-    let step = (tube - minor) / slope;
-    if slope.abs() > 1e-3 && step.abs() < 1e-7 { t - step } else { t }
+    let out = ring - major;
+    let excess = out * out + p.z * p.z - minor * minor;
+    let slope = 2.0 * (out * p.truncate().dot(dir.truncate()) / ring + p.z * dir.z);
+    let step = excess / slope;
+    // Not where the line grazes the tube, nor on the axis.
+    if slope.abs() > 2e-3 * minor && step.abs() < 1e-7 { t - step } else { t }
 }
 
 /// u is the azimuth, v the angle around the tube from the outer equator, both over [0, 1].
