@@ -27,15 +27,20 @@ pub struct Hit {
     pub ng: DVec3,
     /// Unit shading normal, on the side of `ng`.
     pub ns: DVec3,
-    pub uv: DVec2,
-    /// Direction of growing u on the surface, unit, orthogonal to `ng`.
-    pub dpdu: DVec3,
     pub material: MaterialIndex,
     pub part: PartId,
     /// Number of the shape's face, or of the mesh's triangle.
     pub face: u32,
     /// The part is a leaf of a solid; otherwise an open surface.
     pub closed: bool,
+}
+
+/// Surface coordinates at a hit, found on demand by [`Scene::parametrize`](crate::Scene::parametrize).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parametrization {
+    pub uv: DVec2,
+    /// Direction of growing u on the surface, unit, orthogonal to the hit's `ng`.
+    pub dpdu: DVec3,
 }
 
 /// A maximal stretch of a ray inside one solid. Rays may start inside: then `t_enter` is 0 and `enter` is `None`.

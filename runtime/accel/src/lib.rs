@@ -28,5 +28,5 @@ pub use error::AccelError;
 pub use geometry::{
     Csg, CsgLeaf, Instance, MaterialIndex, SceneGeometry, Solid, Strategy, Surface, SurfaceShape, TriangleMesh,
 };
-pub use hit::{AreaSample, Hit, Interval, PartId};
+pub use hit::{AreaSample, Hit, Interval, Parametrization, PartId};
 pub use scene::{BuildOptions, BuildStats, Part, PartKind, Scene};

@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use arsc_embree::Scene as EmbreeScene;
-use arsc_geometry::{Aabb, Placed, Ray, SurfacePoint};
+use arsc_geometry::{Aabb, Foot, Placed, Ray, SurfacePoint};
 
 use crate::frame::Frame;
 use crate::level::{Level, Prototype};
@@ -18,7 +18,9 @@ use crate::solid::SolidModel;
 use crate::surfaces::SurfaceModel;
 use crate::tree::{Transition, transitions};
 use crate::world::{InstanceModel, World, device};
-use crate::{AccelError, AreaSample, Hit, Interval, MaterialIndex, PartId, SceneGeometry, Solid, Strategy};
+use crate::{
+    AccelError, AreaSample, Hit, Interval, MaterialIndex, Parametrization, PartId, SceneGeometry, Solid, Strategy,
+};
 
 /// Parts are numbered in 32 bits, with room for what is added to them.
 const MOST_PARTS: usize = (u32::MAX / 2) as usize;
@@ -300,6 +302,32 @@ impl Scene {
         }
     }
 
+    /// Surface coordinates of a hit of this scene.
+    pub fn parametrize(&self, hit: &Hit) -> Parametrization {
+        match self.parts[hit.part.0 as usize].kind {
+            PartKind::Leaf { solid, leaf } => {
+                let member = &self.members[solid as usize];
+                let placed = &member.model.leaves[leaf as usize];
+                let Some(frame) = &member.frame else {
+                    let point = placed.surface(hit.p, hit.face);
+                    return Parametrization { uv: point.uv, dpdu: point.dpdu };
+                };
+                let point = placed.surface(frame.object_from_world.transform_point3(hit.p), hit.face);
+                Parametrization { uv: point.uv, dpdu: frame.tangent_to_world(&point, hit.ng) }
+            }
+            PartKind::Surface { surface } => {
+                let point = match &self.surfaces()[surface as usize] {
+                    SurfaceModel::Flat(flat) => flat.surface(hit.p),
+                    SurfaceModel::Triangles(mesh) => {
+                        let weights = mesh.crossing(hit.face as usize, hit.p, hit.ng).map_or(DVec2::ZERO, |(_, w)| w);
+                        mesh.surface(hit.face as usize, weights).0
+                    }
+                };
+                Parametrization { uv: point.uv, dpdu: point.dpdu }
+            }
+        }
+    }
+
     fn surfaces(&self) -> &[SurfaceModel] {
         &self.world.callbacks().surfaces
     }
@@ -307,7 +335,7 @@ impl Scene {
     /// The frame at a candidate.
     fn complete(&self, candidate: &Candidate, tie: f64, ray: &Ray) -> Hit {
         let p = ray.at(candidate.t);
-        let (point, ns, face, flipped, closed) = match candidate.target {
+        let (point, ns, face, flipped, closed): (Foot, _, _, _, _) = match candidate.target {
             Target::Solid { solid, transition } => {
                 let member = &self.members[solid as usize];
                 let point = member.surface(&transition, p);
@@ -316,12 +344,12 @@ impl Scene {
             Target::Flat { surface } => {
                 let SurfaceModel::Flat(flat) = &self.surfaces()[surface as usize] else { unreachable!() };
                 let point = flat.surface(p);
-                (point, point.n, 0, false, false)
+                (point.into(), point.n, 0, false, false)
             }
             Target::Triangle { surface, triangle, weights } => {
                 let SurfaceModel::Triangles(mesh) = &self.surfaces()[surface as usize] else { unreachable!() };
                 let (point, ns) = mesh.surface(triangle as usize, weights);
-                (point, ns, triangle, false, false)
+                (point.into(), ns, triangle, false, false)
             }
         };
         let sign = if flipped { -1.0 } else { 1.0 };
@@ -331,8 +359,6 @@ impl Scene {
             p_error: point.p_error + tie,
             ng: point.n * sign,
             ns: ns * sign,
-            uv: point.uv,
-            dpdu: point.dpdu,
             material: self.parts[candidate.part as usize].material,
             part: PartId(candidate.part),
             face,
@@ -415,10 +441,10 @@ impl Member {
     }
 
     /// The surface point of a transition at `p`, in the world.
-    fn surface(&self, transition: &Transition, p: DVec3) -> SurfacePoint {
+    fn surface(&self, transition: &Transition, p: DVec3) -> Foot {
         let leaf = &self.model.leaves[transition.leaf as usize];
         let inner = self.frame.as_ref().map_or(p, |frame| frame.object_from_world.transform_point3(p));
-        let mut point = leaf.surface(inner, transition.face);
+        let mut point = leaf.foot(inner, transition.face);
         if transition.shared {
             // Rays that leave must start beyond the other coincident faces as well.
             let others = self.model.leaves.iter().map(|leaf| leaf.error_at(point.p));

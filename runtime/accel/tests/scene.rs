@@ -233,6 +233,32 @@ fn sampling_a_cut_part_is_unbiased() {
     }
 }
 
+/// u and v at the equator of a sphere, plain and as an instance, and on a quad.
+#[test]
+fn surface_coordinates_on_demand() {
+    let ball = Solid { tree: Csg::Leaf(0), leaves: vec![sphere(DVec3::ZERO, 1.0, 0)] };
+    let shift = DAffine3::from_translation(DVec3::new(10.0, 0.0, 0.0));
+    let instance = Instance { solid: Arc::new(ball.clone()), world_from_object: shift };
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y].map(|p| p + DVec3::X * 20.0);
+    let quad = Surface {
+        shape: SurfaceShape::Quad(corners),
+        world_from_object: DAffine3::IDENTITY,
+        material: MaterialIndex(0),
+    };
+    for scene in scenes(SceneGeometry { solids: vec![ball], instances: vec![instance], surfaces: vec![quad] }) {
+        for x in [0.0, 10.0] {
+            let hit = scene.intersect(&Ray::new(DVec3::new(x, 3.0, 0.0), DVec3::NEG_Y)).unwrap();
+            let at = scene.parametrize(&hit);
+            assert!((at.uv - DVec2::new(0.25, 0.5)).length() < 1e-12, "{at:?}");
+            assert!((at.dpdu - DVec3::NEG_X).length() < 1e-12, "{at:?}");
+        }
+        let hit = scene.intersect(&Ray::new(DVec3::new(20.25, 0.75, 1.0), DVec3::NEG_Z)).unwrap();
+        let at = scene.parametrize(&hit);
+        assert!((at.uv - DVec2::new(0.25, 0.75)).length() < 1e-6, "{at:?}");
+        assert!((at.dpdu - DVec3::X).length() < 1e-12, "{at:?}");
+    }
+}
+
 #[test]
 fn rays_that_are_not_finite_meet_nothing() {
     for scene in scenes(solid(Csg::Leaf(0), vec![sphere(DVec3::ZERO, 1.0, 0)])) {
