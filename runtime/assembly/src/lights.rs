@@ -27,6 +27,22 @@ pub fn lower(ir: &Ir) -> Result<(Vec<Light>, Vec<Environment>), AssemblyError> {
     Ok((lights, environments))
 }
 
+/// Where the first point light is.
+pub fn first_point(ir: &Ir) -> Result<Option<DVec3>, AssemblyError> {
+    for &member in members(ir)? {
+        let (origin, kind) = match &node(ir, member)?.kind {
+            NodeKind::Transform { parent_from_child, child } => {
+                (parent_from_child.translation, &node(ir, *child)?.kind)
+            }
+            kind => (DVec3::ZERO, kind),
+        };
+        if matches!(kind, NodeKind::Light(light) if matches!(**light, arsc_ir::Light::Point { .. })) {
+            return Ok(Some(origin));
+        }
+    }
+    Ok(None)
+}
+
 fn lower_light(light: &arsc_ir::Light, world_from_local: &DAffine3) -> Light {
     match light {
         arsc_ir::Light::Point { intensity } => Light::point(world_from_local.translation, intensity),

@@ -1,12 +1,13 @@
-//! `arsc bench`: how fast whole scenes are.
+//! `arsc bench`: how fast whole scenes are. Rays alone: [`crate::bench_rays`].
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::Serialize;
 
 use crate::args::SceneArgs;
-use crate::bug;
+use crate::check::LimitArgs;
+use crate::{bench_rays, bug};
 use crate::compile::compile;
 use crate::exit::Exit;
 use crate::failure::failure;
@@ -15,7 +16,7 @@ use crate::progress::{count, seconds};
 use crate::render::RenderSettings;
 
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+pub enum Format {
     Table,
     Json,
 }
@@ -25,17 +26,38 @@ enum Format {
 pub struct Args {
     /// The scripts
     #[arg(required = true)]
-    scenes: Vec<PathBuf>,
+    pub scenes: Vec<PathBuf>,
 
     /// Seconds of rays, and as many of paths, for each scene
     #[arg(long, value_name = "S", default_value_t = 2.0)]
     seconds: f64,
 
+    /// Only rays, on one thread, in processor time: one through every pixel, one from each hit to the first point light
+    #[arg(long)]
+    rays: bool,
+
+    /// With --rays: how often; the fastest counts
+    #[arg(long, value_name = "N", default_value_t = 3, requires = "rays")]
+    pub repeat: u32,
+
+    /// With --rays: writes what each pixel sees as a PGM picture: 0 nothing, 128 dark, 255 lit
+    #[arg(long, value_name = "FILE", requires = "rays")]
+    pub sights: Option<PathBuf>,
+
     #[arg(long, value_enum, default_value = "table")]
-    format: Format,
+    pub format: Format,
 
     #[command(flatten)]
-    settings: RenderSettings,
+    limits: LimitArgs,
+
+    #[command(flatten)]
+    pub settings: RenderSettings,
+}
+
+impl Args {
+    pub fn scene_args(&self, scene: &Path) -> SceneArgs {
+        SceneArgs { scene: scene.to_owned(), limits: self.limits.clone(), ..SceneArgs::default() }
+    }
 }
 
 #[derive(Serialize)]
@@ -53,6 +75,9 @@ struct Line {
 }
 
 pub fn run(args: &Args) -> Exit {
+    if args.rays {
+        return bench_rays::run(args);
+    }
     if !(args.seconds.is_finite() && args.seconds >= 0.0) {
         eprintln!("error: --seconds wants a number that is not negative");
         return Exit::CouldNotRun;
@@ -74,10 +99,9 @@ pub fn run(args: &Args) -> Exit {
     Exit::Clean
 }
 
-fn measure(scene: &std::path::Path, args: &Args) -> Result<Line, Exit> {
+fn measure(scene: &Path, args: &Args) -> Result<Line, Exit> {
     let start = Instant::now();
-    let arguments = SceneArgs { scene: scene.to_owned(), ..SceneArgs::default() };
-    let compiled = compile(&arguments, true)?;
+    let compiled = compile(&args.scene_args(scene), true)?;
     let compile_seconds = start.elapsed().as_secs_f64();
     bug::stage("bench");
     let machine = Machine::new(&compiled.folder, None, true);
@@ -112,23 +136,28 @@ fn table(lines: &[Line]) {
             count(line.samples_per_second),
         ]
     };
-    let mut rows = vec![header.map(str::to_owned)];
-    rows.extend(lines.iter().map(cells));
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    rows.extend(lines.iter().map(|line| cells(line).to_vec()));
+    print_table(&rows);
+    if let Some(line) = lines.first() {
+        println!("{} threads", line.threads);
+    }
+}
+
+/// Prints rows of equal length, the first column to the left.
+pub fn print_table(rows: &[Vec<String>]) {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..header.len()).map(width).collect();
-    for row in &rows {
+    let widths: Vec<usize> = (0..rows.first().map_or(0, Vec::len)).map(width).collect();
+    for row in rows {
         let mut text = format!("{:<1$}", row[0], widths[0]);
         for (cell, width) in row.iter().zip(&widths).skip(1) {
             text += &format!("  {cell:>width$}");
         }
         println!("{text}");
     }
-    if let Some(line) = lines.first() {
-        println!("{} threads", line.threads);
-    }
 }
 
 /// Milliseconds below a second.
-fn short(s: f64) -> String {
+pub fn short(s: f64) -> String {
     if s < 1.0 { format!("{:.1} ms", 1e3 * s) } else { seconds(s) }
 }

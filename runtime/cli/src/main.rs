@@ -6,6 +6,7 @@
 
 mod args;
 mod bench;
+mod bench_rays;
 mod bug;
 mod check;
 mod compile;
