@@ -43,6 +43,7 @@ impl<E: Fn(&[bool]) -> bool> States for Plain<'_, E> {
 }
 
 /// Flips the states of a cluster. Returns the value after it, and the index of the owner's event if the value changed.
+#[inline]
 pub fn settle(cluster: &[Event], before: bool, states: &mut impl States) -> (bool, Option<usize>) {
     flip(cluster, states);
     let after = states.value();
@@ -52,6 +53,12 @@ pub fn settle(cluster: &[Event], before: bool, states: &mut impl States) -> (boo
     if cluster.len() == 1 {
         return (after, Some(0));
     }
+    (after, owner(cluster, before, after, states))
+}
+
+/// The owner's event of a cluster whose flips have changed the value.
+#[cold]
+fn owner(cluster: &[Event], before: bool, after: bool, states: &mut impl States) -> Option<usize> {
     let slots = flipped_slots(cluster);
     let index = |slot: u32| cluster.iter().position(|event| event.slot == slot);
     for &slot in &slots {
@@ -64,7 +71,7 @@ pub fn settle(cluster: &[Event], before: bool, states: &mut impl States) -> (boo
         states.flip(slot);
         flip(cluster, states);
         if from_after != after || from_before != before {
-            return (after, index(slot));
+            return index(slot);
         }
     }
     // No single leaf decides: from the outside state on, the last flip in ascending order that changes the value.
@@ -82,7 +89,7 @@ pub fn settle(cluster: &[Event], before: bool, states: &mut impl States) -> (boo
     if !after {
         flip(cluster, states);
     }
-    (after, index(owner))
+    index(owner)
 }
 
 fn flip(cluster: &[Event], states: &mut impl States) {

@@ -2,14 +2,12 @@
 
 use std::sync::Arc;
 
-use smallvec::SmallVec;
-
 use arsc_embree::{Bounds, BuildQuality, Callbacks, Device, GeometryId, Scene as EmbreeScene, SceneBuilder, Step};
-use arsc_geometry::{Aabb, Crossings, Shape};
+use arsc_geometry::Aabb;
 
-use crate::cells::{self, CellSet, Leaves, Window};
+use crate::cells::{self, CellSet, Line, Window};
 use crate::nearest::{Candidate, Target};
-use crate::query::{Extent, Mode, Query, Scratch, View, slab};
+use crate::query::{Extent, Mode, Query, View, slab};
 use crate::solid::{SolidModel, SolidRay};
 use crate::tree::{self, Transition};
 use crate::{AccelError, Strategy};
@@ -177,48 +175,41 @@ impl Level {
         query.tests += 1;
         let solid = &self.solids[cell.solid as usize];
         let window = Window { low, high, start: ray.start, tolerance: solid.tolerance };
-        let mut events = std::mem::take(&mut query.scratch.events);
-        let key = u64::from(view.first_solid + cell.solid) << 32;
-        let mut source = CellLeaves { solid, ray: *ray, key, scratch: &mut query.scratch };
-        // Offered after the walk, which needs the scratch; at most one unless all are collected.
-        let mut found: SmallVec<[Transition; 4]> = SmallVec::new();
-        let all = query.mode == Mode::Collect;
-        cells::transitions(set.code(cell), set.leaves(cell), &mut source, &window, &mut events, |transition| {
-            found.push(transition);
-            all
+        let line = Line {
+            solid,
+            origin: ray.origin,
+            dir: ray.dir,
+            inverse_dir: view.inverse_dir,
+            inverse_square: view.inverse_square,
+            key: u64::from(view.first_solid + cell.solid) << 32,
+        };
+        if query.mode == Mode::Collect {
+            let mut found = vec![];
+            set.transitions(cell, &line, &window, &mut query.scratch, |transition| {
+                found.push(transition);
+                true
+            });
+            for transition in found {
+                query.offer(self.candidate(cell.solid, transition, ray, &view));
+            }
+            return;
+        }
+        let mut found = None;
+        set.transitions(cell, &line, &window, &mut query.scratch, |transition| {
+            found = Some(transition);
+            false
         });
-        query.scratch.events = events;
-        for transition in found {
+        if let Some(transition) = found {
             query.offer(self.candidate(cell.solid, transition, ray, &view));
         }
     }
 
     fn candidate(&self, solid: u32, transition: Transition, ray: &SolidRay, view: &View) -> Candidate {
         Candidate {
-            t: (transition.t - ray.start) / view.scale,
+            t: (transition.t - ray.start) * view.inverse_scale,
             part: view.first_part + self.first_parts[solid as usize] + transition.leaf,
-            tolerance: self.solids[solid as usize].tolerance / view.scale,
+            tolerance: self.solids[solid as usize].tolerance * view.inverse_scale,
             target: Target::Solid { solid: view.first_solid + solid, transition },
-        }
-    }
-}
-
-/// Crossings of a solid's leaves, quartics solved once per ray.
-struct CellLeaves<'a> {
-    solid: &'a SolidModel,
-    ray: SolidRay,
-    key: u64,
-    scratch: &'a mut Scratch,
-}
-
-impl Leaves for CellLeaves<'_> {
-    fn crossings(&mut self, leaf: u32) -> Crossings {
-        let placed = &self.solid.leaves[leaf as usize];
-        let solve = || placed.crossings(self.ray.origin, self.ray.dir);
-        if matches!(placed.shape(), Shape::Torus { .. }) {
-            self.scratch.roots(self.key | u64::from(leaf), solve)
-        } else {
-            solve()
         }
     }
 }

@@ -5,7 +5,6 @@ use glam::DVec3;
 use arsc_embree::{Bounds, Segment, Step};
 use arsc_geometry::{Aabb, Crossings, Ray};
 
-use crate::coincidence::Event;
 use crate::nearest::{Candidate, Nearest};
 
 /// Room around boxes for single precision rays, relative to the largest coordinate: roundings of origin, direction and
@@ -35,8 +34,11 @@ pub struct View {
     /// Unit.
     pub dir: DVec3,
     pub inverse_dir: DVec3,
-    /// Lengths here per unit of the ray's `t`.
+    /// `1 / dir²`: one, but for the rounding.
+    pub inverse_square: f64,
+    /// Lengths here per unit of the ray's `t`, and the reciprocal.
     pub scale: f64,
+    pub inverse_scale: f64,
     /// Number of the frame's first solid, and of its first part.
     pub first_solid: u32,
     pub first_part: u32,
@@ -50,9 +52,24 @@ impl View {
     /// `ray` is in the frame, its `dir` of any length.
     pub fn new(ray: &Ray, first_solid: u32, first_part: u32) -> View {
         let scale = ray.dir.length();
-        let dir = ray.dir / scale;
-        let inverse_dir = dir.recip();
-        View { origin: ray.origin, dir, inverse_dir, scale, first_solid, first_part, shift: 0.0, slack: 0.0 }
+        let unit = Ray { dir: ray.dir / scale, ..*ray };
+        View { scale, inverse_scale: 1.0 / scale, first_solid, first_part, ..View::world(&unit) }
+    }
+
+    /// `ray` is in the world, its `dir` unit.
+    pub fn world(ray: &Ray) -> View {
+        View {
+            origin: ray.origin,
+            dir: ray.dir,
+            inverse_dir: ray.dir.recip(),
+            inverse_square: 1.0 / ray.dir.length_squared(),
+            scale: 1.0,
+            inverse_scale: 1.0,
+            first_solid: 0,
+            first_part: 0,
+            shift: 0.0,
+            slack: 0.0,
+        }
     }
 
     /// The single precision segment through what `extent` holds, from close before it; `None` when it is missed.
@@ -71,7 +88,7 @@ impl View {
             origin: single(self.origin + self.dir * self.shift),
             dir: single(self.dir),
             t_near: 0.0,
-            t_far: self.far(high / self.scale),
+            t_far: self.far(high * self.inverse_scale),
         })
     }
 
@@ -128,14 +145,19 @@ impl Extent {
 }
 
 /// Where a line is in a box: parameters of entry and exit, entry above exit when it is missed.
+#[inline]
 pub fn slab(bounds: &Aabb, origin: DVec3, inverse_dir: DVec3) -> (f64, f64) {
-    let a = (bounds.min - origin) * inverse_dir;
-    let b = (bounds.max - origin) * inverse_dir;
-    // `f64::min` and `max` pass over the NaN of a ray in a face's plane: it counts as within.
-    let low = |x: f64, y: f64| x.min(y);
-    let high = |x: f64, y: f64| x.max(y);
-    let near = low(a.x, b.x).max(low(a.y, b.y)).max(low(a.z, b.z));
-    let far = high(a.x, b.x).min(high(a.y, b.y)).min(high(a.z, b.z));
+    let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
+    let mut cut = |min: f64, max: f64, o: f64, inverse: f64| {
+        let (a, b) = if inverse < 0.0 { (max, min) } else { (min, max) };
+        let (a, b) = ((a - o) * inverse, (b - o) * inverse);
+        // False for the NaN of a ray in a face's plane: it counts as within.
+        near = if a > near { a } else { near };
+        far = if b < far { b } else { far };
+    };
+    cut(bounds.min.x, bounds.max.x, origin.x, inverse_dir.x);
+    cut(bounds.min.y, bounds.max.y, origin.y, inverse_dir.y);
+    cut(bounds.min.z, bounds.max.z, origin.z, inverse_dir.z);
     (near, far)
 }
 
@@ -154,8 +176,8 @@ impl RootCache {
 /// Buffers that outlive a ray.
 #[derive(Debug)]
 pub struct Scratch {
-    pub events: Vec<Event>,
     pub collected: Vec<Candidate>,
+    kept: Crossings,
     cache: RootCache,
 }
 
@@ -163,30 +185,35 @@ impl Default for Scratch {
     fn default() -> Scratch {
         let cache =
             RootCache { keys: [0; RootCache::SIZE], roots: [const { Crossings::NONE }; RootCache::SIZE], len: 0 };
-        Scratch { events: Vec::new(), collected: Vec::new(), cache }
+        Scratch { collected: Vec::new(), kept: Crossings::NONE, cache }
     }
 }
 
 impl Scratch {
     fn clear(&mut self) {
-        self.events.clear();
         self.collected.clear();
         self.cache.len = 0;
     }
 
     /// The roots of leaf `key`, solved once per ray (as long as there is room: the oldest are given up).
-    pub fn roots(&mut self, key: u64, solve: impl FnOnce() -> Crossings) -> Crossings {
+    pub fn roots(&mut self, key: u64, solve: impl FnOnce() -> Crossings) -> &Crossings {
         let cache = &mut self.cache;
         let filled = cache.len.min(RootCache::SIZE);
-        if let Some(i) = cache.keys[..filled].iter().position(|&k| k == key) {
-            return cache.roots[i].clone();
-        }
-        let roots = solve();
-        let i = cache.len % RootCache::SIZE;
-        cache.keys[i] = key;
-        cache.roots[i] = roots.clone();
-        cache.len += 1;
-        roots
+        let known = cache.keys[..filled].iter().position(|&k| k == key);
+        let i = known.unwrap_or_else(|| {
+            let i = cache.len % RootCache::SIZE;
+            cache.keys[i] = key;
+            cache.roots[i] = solve();
+            cache.len += 1;
+            i
+        });
+        &cache.roots[i]
+    }
+
+    /// Keeps crossings until the next are kept.
+    pub fn keep(&mut self, crossings: Crossings) -> &Crossings {
+        self.kept = crossings;
+        &self.kept
     }
 }
 
@@ -211,7 +238,7 @@ impl Query {
         Query {
             mode,
             ray: *ray,
-            view: View::new(ray, 0, 0),
+            view: View::world(ray),
             nearest: Nearest::new(ray.t_max),
             blocked: false,
             only: None,

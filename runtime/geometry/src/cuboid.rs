@@ -2,30 +2,10 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::{Crossings, LocalPoint};
+use crate::{Crossings, LocalPoint, Span};
 
 pub(crate) fn crossings(min: DVec3, max: DVec3, origin: DVec3, dir: DVec3) -> Crossings {
-    let (mut t0, mut f0) = (f64::NEG_INFINITY, 0);
-    let (mut t1, mut f1) = (f64::INFINITY, 0);
-    for axis in 0..3 {
-        let (o, d) = (origin[axis], dir[axis]);
-        if d == 0.0 {
-            if o < min[axis] || o > max[axis] {
-                return Crossings::NONE;
-            }
-            continue;
-        }
-        let face = 2 * axis as u32;
-        let (low, high) = ((min[axis] - o) / d, (max[axis] - o) / d);
-        let (near, far) = if d > 0.0 { ((low, face), (high, face + 1)) } else { ((high, face + 1), (low, face)) };
-        if near.0 > t0 {
-            (t0, f0) = near;
-        }
-        if far.0 < t1 {
-            (t1, f1) = far;
-        }
-    }
-    Crossings::interval(t0, f0, t1, f1)
+    Span::of_box(min, max, origin, dir.recip()).into()
 }
 
 pub(crate) fn surface(min: DVec3, max: DVec3, p: DVec3, face: u32) -> LocalPoint {

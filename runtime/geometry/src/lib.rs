@@ -18,6 +18,7 @@ mod half_space;
 mod placed;
 mod ray;
 mod shape;
+mod span;
 mod sphere;
 mod torus;
 
@@ -30,3 +31,4 @@ pub use glam::{DAffine3, DMat3, DVec2, DVec3};
 pub use placed::{Direct, PlaceError, Placed, SurfacePoint, invert};
 pub use ray::Ray;
 pub use shape::{LocalPoint, Shape};
+pub use span::Span;

@@ -9,7 +9,7 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
-use crate::{Aabb, Crossings, Shape, cuboid, sphere};
+use crate::{Aabb, Crossings, Shape, Span, cuboid};
 
 /// Roundings granted to a position: two affine maps (five each), the projection onto the surface, the offset; doubled.
 const ROUNDINGS: f64 = 32.0;
@@ -156,7 +156,9 @@ impl Placed {
     /// All crossings of the line, sorted; `dir` finite and not zero.
     pub fn crossings(&self, origin: DVec3, dir: DVec3) -> Crossings {
         match self.direct {
-            Some(Direct::Ball { center, radius }) => return sphere::crossings(radius, origin - center, dir),
+            Some(Direct::Ball { center, radius }) => {
+                return Span::of_ball(center, radius, origin, dir, 1.0 / dir.length_squared()).into();
+            }
             Some(Direct::Box { min, max }) => return cuboid::crossings(min, max, origin, dir),
             Some(Direct::HalfSpace { .. }) | None => {}
         }

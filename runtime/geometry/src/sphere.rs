@@ -4,19 +4,11 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
-use crate::{Crossings, LocalPoint};
+use crate::{Crossings, LocalPoint, Span};
 
-/// `dir` of any length. The closest approach to the centre is found first, so that nothing cancels for a far origin
-/// (Haines, Günther and Akenine-Möller 2019, "Precision improvements for ray/sphere intersection").
+/// `dir` of any length.
 pub(crate) fn crossings(radius: f64, origin: DVec3, dir: DVec3) -> Crossings {
-    let inverse = 1.0 / dir.length_squared();
-    let middle = -origin.dot(dir) * inverse;
-    let square = radius * radius - (origin + dir * middle).length_squared();
-    if square <= 0.0 {
-        return Crossings::NONE;
-    }
-    let half = (square * inverse).sqrt();
-    Crossings::interval(middle - half, 0, middle + half, 0)
+    Span::of_ball(DVec3::ZERO, radius, origin, dir, 1.0 / dir.length_squared()).into()
 }
 
 /// u is the azimuth, v the colatitude from the south pole, both over [0, 1].

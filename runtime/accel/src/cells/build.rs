@@ -66,7 +66,7 @@ pub fn append_outer(set: &mut CellSet, number: u32, solid: &SolidModel) -> Optio
     if substitute(tokens, |leaf| bounded(leaf).then_some(false), &mut out).is_some() {
         return None;
     }
-    let cell = set.push(number, Aabb::EVERYTHING, &leaves_of(&out), &out);
+    let cell = set.push(number, Aabb::EVERYTHING, &leaves_of(&out), &out, &solid.leaves);
     Some((cell, core(solid)))
 }
 
@@ -114,7 +114,7 @@ impl<'a> Builder<'a> {
                 Some((low, high)) => stack.extend([high, low]),
                 None => {
                     let bounds = work.region.dilated(self.solid.tolerance);
-                    self.set.push(self.number, bounds, &leaves, &work.tokens);
+                    self.set.push(self.number, bounds, &leaves, &work.tokens, &self.solid.leaves);
                     self.cells_left = self.cells_left.saturating_sub(1);
                 }
             }

@@ -11,12 +11,13 @@ mod query;
 mod split;
 mod truth_table;
 
-use arsc_geometry::Aabb;
+use arsc_geometry::{Aabb, Direct, Placed, Shape};
+use glam::DVec3;
 
 use crate::expression::Token;
 
 pub use build::{append_outer, append_solid, core};
-pub use query::{Leaves, Window, transitions};
+pub use query::{Line, Window};
 
 /// Expressions of at most so many leaves are kept as truth tables.
 pub const TABLE_LEAVES: usize = 6;
@@ -37,12 +38,47 @@ pub struct Cell {
     code: u64,
 }
 
+/// A leaf of a cell, with what its crossings are computed from where that is little: a cache line.
+#[derive(Clone, Copy, Debug)]
+pub struct CellLeaf {
+    pub leaf: u32,
+    pub kernel: Kernel,
+}
+
+/// How a leaf is crossed.
+#[derive(Clone, Copy, Debug)]
+pub enum Kernel {
+    Ball {
+        center: DVec3,
+        radius: f64,
+    },
+    Box {
+        min: DVec3,
+        max: DVec3,
+    },
+    /// By the placed leaf.
+    Placed,
+    /// The same, and worth keeping from one cell to the next.
+    Costly,
+}
+
+impl Kernel {
+    fn new(placed: &Placed) -> Kernel {
+        match (placed.direct(), placed.shape()) {
+            (Some(&Direct::Ball { center, radius }), _) => Kernel::Ball { center, radius },
+            (Some(&Direct::Box { min, max }), _) => Kernel::Box { min, max },
+            (_, Shape::Torus { .. }) => Kernel::Costly,
+            _ => Kernel::Placed,
+        }
+    }
+}
+
 /// Cells of any number of solids, in flat arrays.
 #[derive(Clone, Debug, Default)]
 pub struct CellSet {
     pub cells: Vec<Cell>,
     /// Leaves of each cell, ascending.
-    leaves: Vec<u32>,
+    leaves: Vec<CellLeaf>,
     /// Expressions of cells with many leaves, over positions in the cell's leaf list.
     tokens: Vec<Token>,
 }
@@ -55,11 +91,13 @@ pub enum Code<'a> {
 }
 
 impl CellSet {
-    pub fn leaves(&self, cell: &Cell) -> &[u32] {
+    #[inline]
+    fn leaves(&self, cell: &Cell) -> &[CellLeaf] {
         &self.leaves[cell.first_leaf as usize..][..cell.leaf_count as usize]
     }
 
-    pub fn code(&self, cell: &Cell) -> Code<'_> {
+    #[inline]
+    fn code(&self, cell: &Cell) -> Code<'_> {
         if cell.leaf_count as usize <= TABLE_LEAVES {
             Code::Table(cell.code)
         } else {
@@ -71,11 +109,12 @@ impl CellSet {
         size_of_val(&self.cells[..]) + size_of_val(&self.leaves[..]) + size_of_val(&self.tokens[..])
     }
 
-    /// Adds a cell; `leaves` are those of `tokens`, ascending. Returns its number.
-    fn push(&mut self, solid: u32, bounds: Aabb, leaves: &[u32], tokens: &[Token]) -> u32 {
+    /// Adds a cell; `leaves` are those of `tokens`, ascending, and index `placed`. Returns its number.
+    fn push(&mut self, solid: u32, bounds: Aabb, leaves: &[u32], tokens: &[Token], placed: &[Placed]) -> u32 {
         let slot = |leaf: u32| leaves.binary_search(&leaf).map_or(0, |i| i as u32);
         let first_leaf = self.leaves.len() as u32;
-        self.leaves.extend_from_slice(leaves);
+        let kernels = leaves.iter().map(|&leaf| CellLeaf { leaf, kernel: Kernel::new(&placed[leaf as usize]) });
+        self.leaves.extend(kernels);
         let (code, token_count) = if leaves.len() <= TABLE_LEAVES {
             (truth_table::table(tokens, slot), 0)
         } else {

@@ -1,16 +1,37 @@
 //! A ray through one cell.
 
-use arsc_geometry::Crossings;
+use arsc_geometry::{Crossings, Span};
+use glam::DVec3;
 use smallvec::SmallVec;
 
-use crate::cells::Code;
+use crate::cells::{Cell, CellLeaf, CellSet, Code, Kernel};
 use crate::coincidence::{Event, Plain, States, settle};
 use crate::counted::Counted;
 use crate::expression::eval;
+use crate::query::Scratch;
+use crate::solid::SolidModel;
 use crate::tree::Transition;
 
 /// From so many crossings on, values are kept up to date instead of computed anew at each.
 const MANY_EVENTS: usize = 32;
+/// So few crossings are brought in order by insertion.
+const FEW_EVENTS: usize = 16;
+
+/// Crossings in a cell: seldom more than fit.
+type Events = SmallVec<[Event; FEW_EVENTS]>;
+
+/// A ray in the frame of a cell's solid, with what is computed of it once.
+#[derive(Clone, Copy)]
+pub struct Line<'a> {
+    pub solid: &'a SolidModel,
+    pub origin: DVec3,
+    pub dir: DVec3,
+    pub inverse_dir: DVec3,
+    /// `1 / dir²`.
+    pub inverse_square: f64,
+    /// Tells the solid's leaves from those of others in the scratch.
+    pub key: u64,
+}
 
 /// The stretch of a ray that a cell answers for: clusters that begin in `(low, high]`.
 #[derive(Clone, Copy, Debug)]
@@ -22,65 +43,172 @@ pub struct Window {
     pub tolerance: f64,
 }
 
-/// Where the crossings of a cell's leaves come from.
-pub trait Leaves {
-    fn crossings(&mut self, leaf: u32) -> Crossings;
+impl Window {
+    /// Crossings up to here are the past: those of clusters that began before the cell are still looked at.
+    fn from(&self) -> f64 {
+        (self.low - self.tolerance).max(self.start)
+    }
 }
 
-/// Calls `visit` for every transition in the window, in order, until it returns false.
-///
-/// `events` is scratch. Inside or outside at the window's beginning follows from the crossings before it, so a ray may
-/// start anywhere. A cluster that begins just before `low` belongs to the cell before; it is passed over as a whole.
-pub fn transitions(
-    code: Code<'_>,
-    leaves: &[u32],
-    source: &mut impl Leaves,
-    window: &Window,
-    events: &mut Vec<Event>,
-    visit: impl FnMut(Transition) -> bool,
-) {
-    if let ([leaf], Code::Table(table)) = (leaves, code) {
-        return single(*leaf, table & 1 == 1, source, window, visit);
+impl Line<'_> {
+    fn crossings(&self, leaf: &CellLeaf) -> Crossings {
+        self.solid.leaves[leaf.leaf as usize].crossings(self.origin, self.dir)
     }
-    let from = (window.low - window.tolerance).max(window.start);
-    let mut states: SmallVec<[bool; 64]> = SmallVec::with_capacity(leaves.len());
-    events.clear();
-    for (slot, &leaf) in (0..).zip(leaves) {
-        let crossings = source.crossings(leaf);
-        states.push(crossings.inside_after(from));
-        for (t, face) in crossings.iter() {
-            if t > from && t <= window.high + window.tolerance {
-                events.push(Event { t, slot, face });
+
+    #[inline]
+    fn meet<'s>(&self, leaf: &CellLeaf, scratch: &'s mut Scratch) -> Met<'s> {
+        match leaf.kernel {
+            Kernel::Ball { center, radius } => {
+                Met::Span(Span::of_ball(center, radius, self.origin, self.dir, self.inverse_square))
+            }
+            Kernel::Box { min, max } => Met::Span(Span::of_box(min, max, self.origin, self.inverse_dir)),
+            Kernel::Placed => Met::List(scratch.keep(self.crossings(leaf))),
+            Kernel::Costly => Met::List(scratch.roots(self.key | u64::from(leaf.leaf), || self.crossings(leaf))),
+        }
+    }
+}
+
+/// Crossings with one leaf: of a shape that is convex and needs no map, or of any other.
+enum Met<'s> {
+    Span(Option<Span>),
+    List(&'s Crossings),
+}
+
+impl CellSet {
+    /// Calls `visit` for every transition in the window, in order, until it returns false.
+    ///
+    /// Inside or outside at the window's beginning follows from the crossings before it, so a ray may start anywhere. A
+    /// cluster that begins just before `low` belongs to the cell before; it is passed over as a whole.
+    #[inline]
+    pub fn transitions(
+        &self,
+        cell: &Cell,
+        line: &Line,
+        window: &Window,
+        scratch: &mut Scratch,
+        visit: impl FnMut(Transition) -> bool,
+    ) {
+        let leaves = self.leaves(cell);
+        match (leaves, self.code(cell)) {
+            ([leaf], Code::Table(table)) => single(leaf, table & 1 == 1, line, window, scratch, visit),
+            (_, Code::Table(table)) => several(leaves, table, line, window, scratch, visit),
+            (_, Code::Tokens(tokens)) => {
+                let mut states: SmallVec<[bool; 64]> = SmallVec::with_capacity(leaves.len());
+                let mut events = Events::new();
+                gather(leaves, line, window, scratch, &mut events, |_, state| states.push(state));
+                if events.len() < MANY_EVENTS {
+                    let eval = |states: &[bool]| eval(tokens, |slot| states[slot as usize]);
+                    walk(leaves, &events, window, Plain { states: &mut states, eval }, visit);
+                } else {
+                    walk(leaves, &events, window, Counted::new(tokens, &states), visit);
+                }
             }
         }
     }
-    if events.is_empty() {
+}
+
+/// Collects the crossings in the window, sorted, and tells each leaf's state before them.
+#[inline]
+fn gather(
+    leaves: &[CellLeaf],
+    line: &Line,
+    window: &Window,
+    scratch: &mut Scratch,
+    events: &mut Events,
+    mut state: impl FnMut(u32, bool),
+) {
+    let from = window.from();
+    let to = window.high + window.tolerance;
+    for (slot, leaf) in (0..).zip(leaves) {
+        let mut push = |t: f64, face: u32| {
+            if t > from && t <= to {
+                events.push(Event { t, slot, face });
+            }
+        };
+        let inside = match line.meet(leaf, scratch) {
+            Met::Span(Some(span)) if span.t1 > from => {
+                push(span.t0, span.f0);
+                push(span.t1, span.f1);
+                span.t0 <= from
+            }
+            Met::Span(_) => false,
+            Met::List(crossings) => {
+                crossings.iter().for_each(|(t, face)| push(t, face));
+                crossings.inside_after(from)
+            }
+        };
+        state(slot, inside);
+    }
+    sort(events);
+}
+
+fn sort(events: &mut [Event]) {
+    if events.len() > FEW_EVENTS {
+        events.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.slot.cmp(&b.slot)));
         return;
     }
-    events.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.slot.cmp(&b.slot)));
-    match code {
-        Code::Table(table) => {
-            let eval = |states: &[bool]| table >> index(states) & 1 == 1;
-            walk(leaves, events, window, Plain { states: &mut states, eval }, visit);
+    // Slots ascend already, and insertion keeps the order of equals.
+    for i in 1..events.len() {
+        let mut j = i;
+        while j > 0 && events[j - 1].t > events[j].t {
+            events.swap(j - 1, j);
+            j -= 1;
         }
-        Code::Tokens(tokens) if events.len() < MANY_EVENTS => {
-            let eval = |states: &[bool]| eval(tokens, |slot| states[slot as usize]);
-            walk(leaves, events, window, Plain { states: &mut states, eval }, visit);
-        }
-        Code::Tokens(tokens) => walk(leaves, events, window, Counted::new(tokens, &states), visit),
     }
 }
 
+/// States of at most six leaves as bits, and the value for each combination.
+struct Bits {
+    states: u32,
+    table: u64,
+}
+
+impl States for Bits {
+    #[inline]
+    fn get(&self, slot: u32) -> bool {
+        self.states >> slot & 1 == 1
+    }
+
+    #[inline]
+    fn flip(&mut self, slot: u32) {
+        self.states ^= 1 << slot;
+    }
+
+    #[inline]
+    fn value(&self) -> bool {
+        self.table >> self.states & 1 == 1
+    }
+}
+
+/// A cell with a truth table.
+fn several(
+    leaves: &[CellLeaf],
+    table: u64,
+    line: &Line,
+    window: &Window,
+    scratch: &mut Scratch,
+    visit: impl FnMut(Transition) -> bool,
+) {
+    let mut events = Events::new();
+    let mut states = 0;
+    gather(leaves, line, window, scratch, &mut events, |slot, state| states |= u32::from(state) << slot);
+    walk(leaves, &events, window, Bits { states, table }, visit);
+}
+
 /// Goes along sorted events, cluster by cluster.
+#[inline]
 fn walk(
-    leaves: &[u32],
+    leaves: &[CellLeaf],
     events: &[Event],
     window: &Window,
     mut states: impl States,
     mut visit: impl FnMut(Transition) -> bool,
 ) {
-    let mut inside = states.value();
     let mut rest = events;
+    if rest.is_empty() {
+        return;
+    }
+    let mut inside = states.value();
     while let Some(first) = rest.first() {
         if first.t > window.high {
             return;
@@ -94,7 +222,8 @@ fn walk(
             let Event { t, slot, face } = cluster[owner];
             let flipped = states.get(slot) != after;
             let shared = cluster.len() > 1;
-            if !visit(Transition { t, leaf: leaves[slot as usize], face, entering: after, flipped, shared }) {
+            let leaf = leaves[slot as usize].leaf;
+            if !visit(Transition { t, leaf, face, entering: after, flipped, shared }) {
                 return;
             }
         }
@@ -103,21 +232,37 @@ fn walk(
     }
 }
 
-/// The bits of the states as a number.
-fn index(states: &[bool]) -> u32 {
-    states.iter().rev().fold(0, |bits, &state| bits << 1 | u32::from(state))
-}
-
 /// One leaf, or (`negated`) its complement: its crossings are the transitions, pairs within the tolerance cancel.
+#[inline]
 fn single(
-    leaf: u32,
+    leaf: &CellLeaf,
     negated: bool,
-    source: &mut impl Leaves,
+    line: &Line,
     window: &Window,
+    scratch: &mut Scratch,
     mut visit: impl FnMut(Transition) -> bool,
 ) {
-    let crossings = source.crossings(leaf);
-    let from = (window.low - window.tolerance).max(window.start);
+    let from = window.from();
+    // Whether to go on.
+    let mut found = |t: f64, face: u32, inside: bool| {
+        let transition =
+            Transition { t, leaf: leaf.leaf, face, entering: inside != negated, flipped: negated, shared: false };
+        t <= window.low || visit(transition)
+    };
+    let crossings = match line.meet(leaf, scratch) {
+        Met::Span(None) => return,
+        Met::Span(Some(span)) => {
+            let (enters, thick) = (span.t0 > from, span.t1 > span.t0 + window.tolerance);
+            if enters && !(thick && span.t0 <= window.high && found(span.t0, span.f0, true)) {
+                return;
+            }
+            if span.t1 > from && span.t1 <= window.high {
+                found(span.t1, span.f1, false);
+            }
+            return;
+        }
+        Met::List(crossings) => crossings,
+    };
     let mut inside = crossings.inside_before;
     let roots = crossings.t();
     let mut i = 0;
@@ -129,13 +274,8 @@ fn single(
         let together = roots[i..].iter().take_while(|&&t| t <= roots[i] + window.tolerance).count();
         if together % 2 == 1 {
             inside = !inside;
-            if roots[i] > window.low {
-                let (t, face) = (roots[i], crossings.face(i));
-                let entering = inside != negated;
-                let shared = false;
-                if !visit(Transition { t, leaf, face, entering, flipped: negated, shared }) {
-                    return;
-                }
+            if !found(roots[i], crossings.face(i), inside) {
+                return;
             }
         }
         i += together;
