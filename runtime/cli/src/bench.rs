@@ -7,13 +7,13 @@ use serde::Serialize;
 
 use crate::args::SceneArgs;
 use crate::check::LimitArgs;
-use crate::{bench_rays, bug};
 use crate::compile::compile;
 use crate::exit::Exit;
 use crate::failure::failure;
 use crate::host::Machine;
 use crate::progress::{count, seconds};
 use crate::render::RenderSettings;
+use crate::{bench_rays, bug};
 
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {

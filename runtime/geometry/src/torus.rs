@@ -106,13 +106,16 @@ impl Quartic {
         }
     }
 
-    /// All roots in `(low, high)`, ascending; the value counts as positive at both ends.
-    fn roots(&self, low: f64, high: f64, found: &mut impl FnMut(f64)) {
+    /// All roots in `(low, high)`, ascending; the value counts as positive at `high`, and at `low` if `outside`.
+    fn roots(&self, low: f64, high: f64, mut outside: bool, found: &mut impl FnMut(f64)) {
         if self.p >= 0.0 {
-            return self.pair(low, high, 1.0, found);
+            if outside {
+                return self.pair(low, high, 1.0, found);
+            }
+            return found(self.root(low, high, true, self.newton(high)));
         }
         let inflection = (self.p * (-1.0 / 6.0)).sqrt();
-        let (mut start, mut outside) = (low, true);
+        let mut start = low;
         for (end, bend) in [(-inflection, 1.0), (inflection, -1.0), (high, 1.0)] {
             if end <= start {
                 continue;
@@ -140,9 +143,7 @@ impl Quartic {
     }
 }
 
-/// `dir` is unit. A root where the line meets the surface at an angle is exact to some 2⁻⁴⁹ of the outer radius or of
-/// the origin's distance. Lines that enter the tube by less than 2⁻⁴⁶ of its radius, or 2⁻⁵¹ of the outer radius if that is
-/// more, may meet nothing.
+/// `dir` is unit. Error bound: [`crate::Shape::crossings`].
 pub(crate) fn crossings(major: f64, minor: f64, origin: DVec3, dir: DVec3) -> Crossings {
     // Unit outer radius: the quartic's terms are then of order one.
     let scale = major + minor;
@@ -179,32 +180,52 @@ pub(crate) fn crossings(major: f64, minor: f64, origin: DVec3, dir: DVec3) -> Cr
     let quartic = Quartic { p: 2.0 * k - rr * c, q: -2.0 * rr * b, s: k * k - rr * a };
     let mut found = Crossings::NONE;
     let mut last = low;
-    quartic.roots(low, high, &mut |t| {
-        // Polishing must not swap the two roots of a line that grazes.
-        let t = polished(major, minor, o, dir, t).max(last);
-        last = t;
-        // The quartic is zero on the inner side of a spindle too, where the solid goes on.
-        if k + t * t >= 0.0 {
-            found.push(t, 0);
-        }
-    });
-    if found.len() % 2 == 1 {
-        // Rounding split a pair at a pole of a spindle: the line grazes it.
-        return Crossings::NONE;
+    // Polishing must not swap the two roots of a line that grazes.
+    let mut push = |t: f64| {
+        last = polished(major, minor, o, dir, t).max(last);
+        found.push(last, 0);
+    };
+    if k < 0.0 {
+        spindle_roots(&quartic, low, high, (-k).sqrt(), &mut push);
+    } else {
+        quartic.roots(low, high, true, &mut push);
     }
     found.remapped(middle * unit, scale)
 }
 
-/// One Newton step on the distance to the tube, which is better conditioned than the quartic for thin tori.
-fn polished(major: f64, minor: f64, o: DVec3, dir: DVec3, t: f64) -> f64 {
-    let p = o + dir * t;
-    let ring = p.truncate().length();
-    let out = ring - major;
-    let excess = out * out + p.z * p.z - minor * minor;
-    let slope = 2.0 * (out * p.truncate().dot(dir.truncate()) / ring + p.z * dir.z);
-    let step = excess / slope;
-    // Not where the line grazes the tube, nor on the axis.
-    if slope.abs() > 2e-3 * minor && step.abs() < 1e-7 { t - step } else { t }
+/// Roots of a line that passes between the poles of a spindle. Within `lens` of the closest approach it is inside, where
+/// the quartic is zero on the inner side of the surface too; at the ends of that stretch the quartic is negative, but for
+/// lines through a pole, where it has a double root and no sign.
+fn spindle_roots(quartic: &Quartic, low: f64, high: f64, lens: f64, found: &mut impl FnMut(f64)) {
+    let mirrored = Quartic { q: -quartic.q, ..*quartic };
+    let mut before = [0.0; 3];
+    let mut count = 0;
+    mirrored.roots(lens.min(-low), -low, false, &mut |t| {
+        before[count] = t;
+        count += 1;
+    });
+    before[..count].iter().rev().for_each(|t| found(-t));
+    quartic.roots(lens.min(high), high, false, found);
+}
+
+/// Newton steps on the distance to the tube, which is better conditioned than the quartic: for thin tori, and near the poles
+/// of a spindle, where the quartic's roots are double.
+fn polished(major: f64, minor: f64, o: DVec3, dir: DVec3, mut t: f64) -> f64 {
+    let steps = if minor > major { 3 } else { 1 };
+    for _ in 0..steps {
+        let p = o + dir * t;
+        let ring = p.truncate().length();
+        let out = ring - major;
+        let excess = out * out + p.z * p.z - minor * minor;
+        let outwards = if ring > 0.0 { p.truncate().dot(dir.truncate()) / ring } else { 0.0 };
+        let slope = 2.0 * (out * outwards + p.z * dir.z);
+        let step = excess / slope;
+        // Not where the line grazes the tube.
+        if slope.abs() > 2e-3 * minor && step.abs() < 1e-7 {
+            t -= step;
+        }
+    }
+    t
 }
 
 /// u is the azimuth, v the angle around the tube from the outer equator, both over [0, 1].
