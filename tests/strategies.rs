@@ -1,8 +1,8 @@
-//! Strategy against strategy on random trees and rays, and both against point membership.
+//! Strategy against strategy on random trees and rays, and all against point membership.
 //!
 //! 260 trees, a friendly and a hostile family (coincident faces, tangents, rays within faces, starts inside, mirrored and
-//! sheared maps, scales from 1e-3 to 1e6), 4 000 rays each: nearest hit, occlusion and all intervals of `Local` must be
-//! those of `Tree`, and the middle of every interval and gap must be inside or outside by plain membership. A difference
+//! sheared maps, scales from 1e-3 to 1e6), 4 000 rays each: nearest hit, occlusion and all intervals of every strategy must be
+//! those of the oracle, and the middle of every interval and gap must be inside or outside by plain membership. A difference
 //! is excused only if the ray is near a boundary: moved by a billionth of the scene it gets another answer from the oracle
 //! itself. Such rays are counted and bounded. Seeds are fixed; nothing here is statistical.
 
@@ -167,12 +167,12 @@ fn close(a: f64, b: f64, tolerance: f64) -> bool {
     a == b || (a - b).abs() <= tolerance
 }
 
-/// The first difference between the strategies, or with membership.
-fn difference(case: &Case, placed: &[Placed], tree: &Scene, local: &Scene, ray: &Ray, t_max: f64) -> Option<String> {
+/// The first difference of a strategy's answers from the oracle's intervals.
+fn difference(case: &Case, expected: &[Interval], scene: &Scene, ray: &Ray, t_max: f64) -> Option<String> {
     let tolerance = 1e-7 * (case.scale + ray.origin.length());
-    let (expected, found) = (tree.intervals(ray), local.intervals(ray));
-    if outline(&expected) != outline(&found) {
-        return Some(format!("intervals {:?} against {:?}", outline(&expected), outline(&found)));
+    let found = scene.intervals(ray);
+    if outline(expected) != outline(&found) {
+        return Some(format!("intervals {:?} against {:?}", outline(expected), outline(&found)));
     }
     for (a, b) in expected.iter().zip(&found) {
         if !close(a.t_enter, b.t_enter, tolerance) || !close(a.t_exit, b.t_exit, tolerance) {
@@ -187,22 +187,23 @@ fn difference(case: &Case, placed: &[Placed], tree: &Scene, local: &Scene, ray: 
         }
     }
     let first = expected.iter().flat_map(|i| [i.enter, i.exit]).flatten().next();
-    for (name, scene) in [("tree", tree), ("local", local)] {
-        let hit = scene.intersect(ray);
-        if hit.map(|hit| hit.part) != first.map(|hit| hit.part) {
-            return Some(format!("{name}: nearest {hit:?} against {first:?}"));
-        }
-        if let (Some(a), Some(b)) = (hit, first)
-            && (!close(a.t, b.t, tolerance) || a.ng.dot(b.ng) < 0.99)
-        {
-            return Some(format!("{name}: nearest at {} against {}", a.t, b.t));
-        }
-        let blocked = first.is_some_and(|hit| hit.t < t_max);
-        if scene.occluded(&Ray { t_max, ..*ray }) != blocked {
-            return Some(format!("{name}: occluded up to {t_max}: {}", !blocked));
-        }
+    let hit = scene.intersect(ray);
+    if hit.map(|hit| hit.part) != first.map(|hit| hit.part) {
+        return Some(format!("nearest {hit:?} against {first:?}"));
     }
-    // Membership in the middle of intervals and of gaps.
+    if let (Some(a), Some(b)) = (hit, first)
+        && (!close(a.t, b.t, tolerance) || a.ng.dot(b.ng) < 0.99)
+    {
+        return Some(format!("nearest at {} against {}", a.t, b.t));
+    }
+    let blocked = first.is_some_and(|hit| hit.t < t_max);
+    let wrong = scene.occluded(&Ray { t_max, ..*ray }) != blocked;
+    wrong.then(|| format!("occluded up to {t_max}: {}", !blocked))
+}
+
+/// Membership in the middle of intervals and of gaps.
+fn contradiction(case: &Case, placed: &[Placed], expected: &[Interval], ray: &Ray) -> Option<String> {
+    let tolerance = 1e-7 * (case.scale + ray.origin.length());
     let mut from = 0.0;
     let beyond = 4.0 * case.scale;
     let probe = |low: f64, high: f64, inside: bool| {
@@ -210,7 +211,7 @@ fn difference(case: &Case, placed: &[Placed], tree: &Scene, local: &Scene, ray: 
         let wrong = high - low > tolerance && contains(&case.solid.tree, placed, ray.at(0.5 * (low + high))) != inside;
         wrong.then(|| format!("between {low} and {high}: inside {}", !inside))
     };
-    for interval in &expected {
+    for interval in expected {
         let wrong = probe(from, interval.t_enter, false).or_else(|| probe(interval.t_enter, interval.t_exit, true));
         if wrong.is_some() {
             return wrong;
@@ -221,13 +222,13 @@ fn difference(case: &Case, placed: &[Placed], tree: &Scene, local: &Scene, ray: 
 }
 
 /// The oracle's own answer changes when the ray is moved by a billionth of the scene.
-fn near_boundary(case: &Case, tree: &Scene, ray: &Ray, rng: &mut Pcg64) -> bool {
-    let before = tree.intervals(ray);
+fn near_boundary(case: &Case, oracle: &Scene, ray: &Ray, rng: &mut Pcg64) -> bool {
+    let before = oracle.intervals(ray);
     (0..24).any(|_| {
         let step = 1e-9 * (case.scale + ray.origin.length());
         let origin = ray.origin + vector(rng, 1.0) * step;
         let dir = (ray.dir + vector(rng, 1e-9)).normalize();
-        let after = tree.intervals(&Ray { origin, dir, ..*ray });
+        let after = oracle.intervals(&Ray { origin, dir, ..*ray });
         outline(&after) != outline(&before)
             || after.iter().zip(&before).any(|(a, b)| {
                 let moved = |a: f64, b: f64| !close(a, b, 1e-7 * (case.scale + ray.origin.length()));
@@ -248,27 +249,38 @@ fn check(seed: u64) -> Tally {
     let (case, mut rng) = case(seed);
     let geometry = SceneGeometry { solids: vec![case.solid.clone()], ..SceneGeometry::default() };
     let build = |strategy| Scene::build(geometry.clone(), BuildOptions { strategy }).unwrap();
-    let (tree, local) = (build(Strategy::Tree), build(Strategy::Local));
+    let oracle = build(Strategy::Oracle);
+    let scenes = Strategy::ALL.map(|strategy| (strategy, build(strategy)));
     let place = |leaf: &CsgLeaf| Placed::new(leaf.shape.clone(), leaf.world_from_object).unwrap();
     let placed: Vec<Placed> = case.solid.leaves.iter().map(place).collect();
     let mut tally = Tally::default();
     for i in 0..RAYS {
         let ray = random_ray(&case, &mut rng);
         let t_max = rng.random_range(0.0..6.0) * case.scale;
-        if let Some(difference) = difference(&case, &placed, &tree, &local, &ray, t_max) {
-            if near_boundary(&case, &tree, &ray, &mut rng) {
+        let expected = oracle.intervals(&ray);
+        let mut differences: Vec<String> = scenes
+            .iter()
+            .filter_map(|(strategy, scene)| {
+                let difference = difference(&case, &expected, scene, &ray, t_max)?;
+                Some(format!("{}: {difference}", strategy.name()))
+            })
+            .collect();
+        differences.extend(contradiction(&case, &placed, &expected, &ray));
+        if !differences.is_empty() {
+            if near_boundary(&case, &oracle, &ray, &mut rng) {
                 tally.excused += 1;
             } else {
-                tally.unexplained.push(format!("seed {seed}, ray {i} {ray:?}, t_max {t_max}: {difference}"));
+                let differences = differences.join("; ");
+                tally.unexplained.push(format!("seed {seed}, ray {i} {ray:?}, t_max {t_max}: {differences}"));
             }
         }
-        tally.intervals += tree.intervals(&ray).len() as u64;
+        tally.intervals += expected.len() as u64;
     }
     tally
 }
 
 #[test]
-fn local_is_tree_is_membership() {
+fn strategies_agree_with_the_oracle_and_with_membership() {
     let next = AtomicU64::new(0);
     let total = Mutex::new(Tally::default());
     std::thread::scope(|scope| {

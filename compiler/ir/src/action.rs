@@ -1,12 +1,37 @@
 //! Actions: what is done with the scene. Stack effects were checked by the compiler.
 
-/// How CSG is traced.
+/// How CSG is traced; all give the same picture (docs/csg.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Strategy {
     /// Localised cells of each solid as Embree primitives.
     Local,
-    /// Every leaf of a solid, then the whole tree: the slow, obvious oracle.
+    /// One KD tree over all leaves of the scene, without Embree; whole trees.
+    Native,
+    /// Embree over leaves, whole trees afterwards.
+    Collect,
+    /// Solids as Embree primitives, their operator trees with boxes.
     Tree,
+    /// Solids as Embree primitives, a KD tree over the leaves of each.
+    Kd,
+    /// `Kd` for solids with mesh operands, else `Tree`.
+    Hybrid,
+}
+
+impl Strategy {
+    pub const ALL: [Strategy; 6] =
+        [Strategy::Local, Strategy::Native, Strategy::Collect, Strategy::Tree, Strategy::Kd, Strategy::Hybrid];
+
+    /// As scripts write it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Strategy::Local => "local",
+            Strategy::Native => "native",
+            Strategy::Collect => "collect",
+            Strategy::Tree => "tree",
+            Strategy::Kd => "kd",
+            Strategy::Hybrid => "hybrid",
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

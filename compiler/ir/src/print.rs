@@ -24,7 +24,7 @@ use arsc_spectral::Spectrum;
 
 use crate::{
     Action, Attributes, Bsdf, Camera, CutRule, Emitter, Environment, Exposure, Filter, Ir, Leaf, Light, Material,
-    NodeId, NodeKind, Precedence, Projection, Strategy, Surface,
+    NodeId, NodeKind, Precedence, Projection, Surface,
 };
 
 impl Display for Ir {
@@ -373,13 +373,7 @@ impl Display for Text<'_, Filter> {
 impl Display for Text<'_, Action> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.0 {
-            Action::Accelerate { strategy } => {
-                let strategy = match strategy {
-                    Strategy::Local => "local",
-                    Strategy::Tree => "tree",
-                };
-                Call::new(f, "accelerate")?.arg("strategy", strategy)?.end()
-            }
+            Action::Accelerate { strategy } => Call::new(f, "accelerate")?.arg("strategy", strategy.name())?.end(),
             Action::BoundingBoxes => f.write_str("bounding_boxes()"),
             Action::CollectLights => f.write_str("collect_lights()"),
             Action::PathTrace { samples, max_depth, seed } => Call::new(f, "path_trace")?

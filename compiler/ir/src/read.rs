@@ -371,11 +371,14 @@ fn action(term: Term) -> Result<Action, Fault> {
 }
 
 fn strategy(term: &Term) -> Result<Strategy, Fault> {
-    match term.kind {
-        TermKind::Word("local") => Ok(Strategy::Local),
-        TermKind::Word("tree") => Ok(Strategy::Tree),
-        _ => Err((term.offset, "expected `local` or `tree`".to_owned())),
-    }
+    let found = match term.kind {
+        TermKind::Word(word) => Strategy::ALL.into_iter().find(|strategy| strategy.name() == word),
+        _ => None,
+    };
+    found.ok_or_else(|| {
+        let names = Strategy::ALL.map(|strategy| format!("`{}`", strategy.name())).join(", ");
+        (term.offset, format!("expected one of {names}"))
+    })
 }
 
 #[cfg(test)]

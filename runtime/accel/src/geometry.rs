@@ -10,14 +10,43 @@ use arsc_geometry::Shape;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MaterialIndex(pub u32);
 
-/// How solids are traced. All give the same picture.
+/// How solids are traced. All give the same picture (docs/csg.md).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Strategy {
     /// Cells with simplified expressions as Embree user primitives.
     #[default]
     Local,
-    /// One Embree user primitive per solid; every leaf intersected, the whole tree evaluated. The oracle.
+    /// One KD tree of our own over the whole scene, without Embree; all hits to the end of the ray, then whole trees.
+    Native,
+    /// Embree finds the leaves along the ray, then whole trees.
+    Collect,
+    /// Each solid one Embree user primitive; its operator tree with boxes at the nodes.
     Tree,
+    /// Each solid one Embree user primitive; a KD tree over its leaves.
+    Kd,
+    /// `Kd` for solids with meshes as operands, `Tree` for the others.
+    Hybrid,
+    /// Every leaf, and the whole expression at every crossing: what tests compare the others with.
+    Oracle,
+}
+
+impl Strategy {
+    /// Those that a script may name.
+    pub const ALL: [Strategy; 6] =
+        [Strategy::Local, Strategy::Native, Strategy::Collect, Strategy::Tree, Strategy::Kd, Strategy::Hybrid];
+
+    /// As scripts and the command line write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Strategy::Local => "local",
+            Strategy::Native => "native",
+            Strategy::Collect => "collect",
+            Strategy::Tree => "tree",
+            Strategy::Kd => "kd",
+            Strategy::Hybrid => "hybrid",
+            Strategy::Oracle => "oracle",
+        }
+    }
 }
 
 /// A Boolean tree; leaves index [`Solid::leaves`].

@@ -17,8 +17,9 @@ mod nearest;
 mod query;
 mod scene;
 mod solid;
+mod strategies;
 mod surfaces;
-mod tree;
+mod transition;
 mod world;
 
 use expression::Expression;

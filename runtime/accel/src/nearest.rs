@@ -7,7 +7,7 @@
 
 use glam::DVec2;
 
-use crate::tree::Transition;
+use crate::transition::Transition;
 
 /// Something met by a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]

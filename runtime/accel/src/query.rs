@@ -6,6 +6,7 @@ use arsc_embree::{Bounds, Segment, Step};
 use arsc_geometry::{Aabb, Crossings, Ray};
 
 use crate::nearest::{Candidate, Nearest};
+use crate::strategies::WholeScratch;
 
 /// Room around boxes for single precision rays, relative to the largest coordinate: roundings of origin, direction and
 /// slab arithmetic make less than 8 units of 2⁻²⁴.
@@ -177,6 +178,7 @@ impl RootCache {
 #[derive(Debug)]
 pub struct Scratch {
     pub collected: Vec<Candidate>,
+    pub whole: WholeScratch,
     kept: Crossings,
     cache: RootCache,
 }
@@ -185,13 +187,14 @@ impl Default for Scratch {
     fn default() -> Scratch {
         let cache =
             RootCache { keys: [0; RootCache::SIZE], roots: [const { Crossings::NONE }; RootCache::SIZE], len: 0 };
-        Scratch { collected: Vec::new(), kept: Crossings::NONE, cache }
+        Scratch { collected: Vec::new(), whole: WholeScratch::default(), kept: Crossings::NONE, cache }
     }
 }
 
 impl Scratch {
     fn clear(&mut self) {
         self.collected.clear();
+        self.whole.clear();
         self.cache.len = 0;
     }
 

@@ -15,8 +15,9 @@ use crate::level::{Level, Prototype};
 use crate::nearest::{Candidate, Target};
 use crate::query::{Mode, Query, Scratch};
 use crate::solid::SolidModel;
+use crate::strategies::oracle;
 use crate::surfaces::SurfaceModel;
-use crate::tree::{Transition, transitions};
+use crate::transition::Transition;
 use crate::world::{InstanceModel, World, device};
 use crate::{
     AccelError, AreaSample, Hit, Interval, MaterialIndex, Parametrization, PartId, SceneGeometry, Solid, Strategy,
@@ -43,7 +44,7 @@ pub struct BuildStats {
     pub surfaces: usize,
     /// Leaves of solids (shared ones once) and surfaces.
     pub primitives: usize,
-    /// Primitives of the bounding hierarchy that stand for solids.
+    /// Boxes that solids are found by: Embree's primitives, or the cells of own trees.
     pub cells: usize,
     /// Bytes held by our own structures and by the hierarchy.
     pub bytes: usize,
@@ -106,7 +107,7 @@ impl Scene {
         let before = device()?.bytes();
         let (instances, shared_cells, shared_bytes) = plan.add_instances(&geometry, options.strategy)?;
         let level = Level::new(solids, options.strategy);
-        let (cells, own_bytes) = (level.primitive_count() + shared_cells, level.bytes() + shared_bytes);
+        let (cells, own_bytes) = (level.cell_count() + shared_cells, level.bytes() + shared_bytes);
         let world = World::build(level, surfaces, first_surface_part, instances)?;
         let stats = BuildStats {
             solids: geometry.solids.len(),
@@ -339,7 +340,7 @@ impl Scene {
             Target::Solid { solid, transition } => {
                 let member = &self.members[solid as usize];
                 let point = member.surface(&transition, p);
-                (point, point.n, u32::from(transition.face), transition.flipped, true)
+                (point, point.n, transition.face, transition.flipped, true)
             }
             Target::Flat { surface } => {
                 let SurfaceModel::Flat(flat) = &self.surfaces()[surface as usize] else { unreachable!() };
@@ -418,13 +419,13 @@ impl Plan {
                     let model = Arc::new(SolidModel::new(&instance.solid, solid)?);
                     let prototype = Arc::new(Prototype::build(device()?, model, strategy)?);
                     let level = &prototype.callbacks().level;
-                    cells += level.primitive_count();
+                    cells += level.cell_count();
                     bytes += level.bytes();
                     shared.insert(Arc::as_ptr(&instance.solid), prototype.clone());
                     prototype
                 }
             };
-            self.add_member(prototype.callbacks().level.solids[0].clone(), Some(frame.clone()))?;
+            self.add_member(prototype.callbacks().level.solids.models[0].clone(), Some(frame.clone()))?;
             instances.push(InstanceModel { prototype, frame, solid, first_part });
         }
         Ok((instances, cells, bytes))
@@ -437,7 +438,7 @@ impl Member {
         let map = self.frame.as_ref().map(|frame| frame.object_from_world);
         let local = map.map_or(*ray, |map| ray.transformed(&map));
         let near = self.model.near_ray(local.origin, local.dir.normalize(), f64::INFINITY);
-        transitions(&self.model, &near, |_| false)
+        oracle::transitions(&self.model, &near, |_| false)
     }
 
     /// The surface point of a transition at `p`, in the world.

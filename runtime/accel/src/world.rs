@@ -41,7 +41,10 @@ pub struct InstanceModel {
 impl InstanceModel {
     fn bounds(&self) -> Aabb {
         let level = &self.prototype.callbacks().level;
-        level.solids[0].bounds.dilated(level.solids[0].tolerance).transformed(&self.frame.world_from_object)
+        level.solids.models[0]
+            .bounds
+            .dilated(level.solids.models[0].tolerance)
+            .transformed(&self.frame.world_from_object)
     }
 
     /// Meets the instance: the same query in its frame.
@@ -196,13 +199,16 @@ impl World {
         if query.blocked {
             return;
         }
+        let mark = query.scratch.whole.mark();
         let limit = query.limit();
-        let Some(segment) = query.view.segment(&this.extent, limit) else { return };
-        if query.mode == Mode::Occluded {
-            scene.occluded(&segment, query);
-        } else {
-            scene.intersect(&segment, query);
+        if let Some(segment) = query.view.segment(&this.extent, limit) {
+            if query.mode == Mode::Occluded {
+                scene.occluded(&segment, query);
+            } else {
+                scene.intersect(&segment, query);
+            }
         }
+        this.level.finish(mark, query);
     }
 
     fn visit_open(&self, query: &mut Query) {

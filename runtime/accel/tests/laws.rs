@@ -80,7 +80,7 @@ fn lengths_add_up() {
         with_frame.push(everything);
         let frame = || Box::new(Csg::Leaf(2 * count));
         let not = |x: &Csg| Csg::Difference(frame(), Box::new(x.clone()));
-        let strategy = if case % 3 == 0 { Strategy::Tree } else { Strategy::Local };
+        let strategy = Strategy::ALL[case as usize % Strategy::ALL.len()];
         let build = |tree: Csg| scene(tree, &with_frame, strategy);
         let (sa, sb) = (build(a.clone()), build(b.clone()));
         let union = build(Csg::Union(vec![a.clone(), b.clone()]));
@@ -123,7 +123,7 @@ fn instances_are_written_out_copies() {
             let moved = leaves.iter().map(|l| CsgLeaf { world_from_object: *place * l.world_from_object, ..l.clone() });
             Solid { tree: tree.clone(), leaves: moved.collect() }
         });
-        let strategy = if case % 2 == 0 { Strategy::Local } else { Strategy::Tree };
+        let strategy = Strategy::ALL[case % Strategy::ALL.len()];
         let build = |geometry| Scene::build(geometry, BuildOptions { strategy }).unwrap();
         let instanced = build(SceneGeometry { instances: instances.collect(), ..SceneGeometry::default() });
         let direct = build(SceneGeometry { solids: written_out.collect(), ..SceneGeometry::default() });

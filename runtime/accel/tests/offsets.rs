@@ -23,8 +23,12 @@ fn rotation(rng: &mut Pcg64) -> DMat3 {
     DMat3::from_axis_angle(vector(rng).normalize(), rng.random_range(0.0..TAU))
 }
 
-fn scenes(geometry: SceneGeometry) -> [Scene; 2] {
-    [Strategy::Tree, Strategy::Local].map(|strategy| Scene::build(geometry.clone(), BuildOptions { strategy }).unwrap())
+/// Under every strategy, if there are solids that they differ in.
+fn scenes(geometry: SceneGeometry) -> Vec<Scene> {
+    let differ = !geometry.solids.is_empty() || !geometry.instances.is_empty();
+    let strategies = if differ { &Strategy::ALL[..] } else { &Strategy::ALL[..1] };
+    let build = |&strategy| Scene::build(geometry.clone(), BuildOptions { strategy }).unwrap();
+    strategies.iter().map(build).collect()
 }
 
 fn one(shape: Shape, map: DAffine3) -> Solid {

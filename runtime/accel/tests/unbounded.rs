@@ -12,11 +12,9 @@ fn leaf(shape: Shape, world_from_object: DAffine3) -> CsgLeaf {
     CsgLeaf { shape, world_from_object, material: MaterialIndex(0) }
 }
 
-const STRATEGIES: [Strategy; 2] = [Strategy::Local, Strategy::Tree];
-
 #[test]
 fn a_lone_half_space_is_hit() {
-    for strategy in STRATEGIES {
+    for strategy in Strategy::ALL {
         let ground = leaf(Shape::HalfSpace, DAffine3::from_translation(DVec3::new(0.0, 0.0, -0.25)));
         let scene = scene(vec![ground], Csg::Leaf(0), strategy);
         let down = Ray::new(DVec3::new(20.0, 60.0, 5.0), DVec3::NEG_Z);
@@ -31,7 +29,7 @@ fn a_lone_half_space_is_hit() {
 
 #[test]
 fn a_slab_between_two_half_spaces_is_hit_from_both_sides() {
-    for strategy in STRATEGIES {
+    for strategy in Strategy::ALL {
         let flipped = DAffine3::from_rotation_x(std::f64::consts::PI);
         let leaves = vec![
             leaf(Shape::HalfSpace, DAffine3::from_translation(DVec3::Z)),
@@ -48,7 +46,7 @@ fn a_slab_between_two_half_spaces_is_hit_from_both_sides() {
 
 #[test]
 fn an_infinite_cylinder_is_hit_far_from_the_origin() {
-    for strategy in STRATEGIES {
+    for strategy in Strategy::ALL {
         let scene =
             scene(vec![leaf(Shape::InfiniteCylinder { radius: 2.0 }, DAffine3::IDENTITY)], Csg::Leaf(0), strategy);
         let hit = scene.intersect(&Ray::new(DVec3::new(5.0, 0.0, 1e4), DVec3::NEG_X)).expect("the cylinder");

@@ -193,7 +193,7 @@ impl Machine<'_> {
         add("seed", settings.seed.to_string());
         add("samples", samples);
         add("maxDepth", settings.max_depth.to_string());
-        add("csg", format!("{strategy:?}").to_lowercase());
+        add("csg", strategy.name().to_owned());
         if let Some([x0, y0, x1, y1]) = settings.crop {
             add("crop", format!("{x0},{y0},{x1},{y1}"));
         }

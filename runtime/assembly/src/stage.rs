@@ -131,6 +131,10 @@ fn words(bounds: &Aabb) -> String {
 pub fn accel_strategy(strategy: arsc_ir::Strategy) -> Strategy {
     match strategy {
         arsc_ir::Strategy::Local => Strategy::Local,
+        arsc_ir::Strategy::Native => Strategy::Native,
+        arsc_ir::Strategy::Collect => Strategy::Collect,
         arsc_ir::Strategy::Tree => Strategy::Tree,
+        arsc_ir::Strategy::Kd => Strategy::Kd,
+        arsc_ir::Strategy::Hybrid => Strategy::Hybrid,
     }
 }

@@ -17,17 +17,29 @@ use crate::{bug, interrupt};
 /// How CSG is traced; all give the same picture.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Csg {
-    /// Cells with simplified trees (the default)
+    /// Cells with simplified trees as Embree primitives (the default)
     Local,
-    /// Every leaf, then the whole tree: slow and obvious
+    /// One KD tree over all leaves of the scene, no Embree; whole trees at the end of the ray
+    Native,
+    /// Embree finds the leaves along the ray; whole trees afterwards
+    Collect,
+    /// Each solid an Embree primitive: its operator tree with bounding boxes
     Tree,
+    /// Each solid an Embree primitive: a KD tree over its leaves
+    Kd,
+    /// `kd` for solids with mesh operands, `tree` for the others
+    Hybrid,
 }
 
 impl From<Csg> for arsc_accel::Strategy {
     fn from(csg: Csg) -> arsc_accel::Strategy {
         match csg {
             Csg::Local => arsc_accel::Strategy::Local,
+            Csg::Native => arsc_accel::Strategy::Native,
+            Csg::Collect => arsc_accel::Strategy::Collect,
             Csg::Tree => arsc_accel::Strategy::Tree,
+            Csg::Kd => arsc_accel::Strategy::Kd,
+            Csg::Hybrid => arsc_accel::Strategy::Hybrid,
         }
     }
 }

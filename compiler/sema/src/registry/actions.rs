@@ -35,7 +35,7 @@ fn scene_actions() -> Vec<Builtin> {
             .param(Param::new(
                 "strategy",
                 Type::Strategy,
-                "`local`: cells with simplified trees; `tree`: every tree whole",
+                "`local`, the fastest, or one of those that it is measured against",
             ))
             .runs(Type::Action, |_, a, site| {
                 Ok(Value::action(Action::Accelerate { strategy: a[0].as_strategy() }, site.span))

@@ -214,10 +214,18 @@ impl Registry {
 
 /// Names that mean a value where a type of few values is wanted: `exposure: auto`.
 pub fn choices(ty: &Type) -> &'static [(&'static str, Value)] {
+    const STRATEGIES: [(&str, Value); Strategy::ALL.len()] = [
+        (Strategy::Local.name(), Value::Strategy(Strategy::Local)),
+        (Strategy::Native.name(), Value::Strategy(Strategy::Native)),
+        (Strategy::Collect.name(), Value::Strategy(Strategy::Collect)),
+        (Strategy::Tree.name(), Value::Strategy(Strategy::Tree)),
+        (Strategy::Kd.name(), Value::Strategy(Strategy::Kd)),
+        (Strategy::Hybrid.name(), Value::Strategy(Strategy::Hybrid)),
+    ];
     use arsc_ir::{Exposure, Strategy};
     match ty {
         Type::Exposure => &[("auto", Value::Exposure(Exposure::Auto))],
-        Type::Strategy => &[("local", Value::Strategy(Strategy::Local)), ("tree", Value::Strategy(Strategy::Tree))],
+        Type::Strategy => &STRATEGIES,
         Type::SkyModel => &[("hosek_wilkie", Value::Only)],
         _ => &[],
     }

@@ -10,7 +10,7 @@ use crate::counted::Counted;
 use crate::expression::eval;
 use crate::query::Scratch;
 use crate::solid::SolidModel;
-use crate::tree::Transition;
+use crate::transition::Transition;
 
 /// From so many crossings on, values are kept up to date instead of computed anew at each.
 const MANY_EVENTS: usize = 32;

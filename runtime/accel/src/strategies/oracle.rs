@@ -1,25 +1,12 @@
-//! The oracle: every leaf crossed, the whole tree evaluated at every crossing (Roth 1982).
+//! The oracle of the tests: every leaf crossed, the whole expression evaluated anew at every crossing (Roth 1982). Slow and
+//! obvious; it shares nothing with the strategies but the leaves, the expression and the rule for coincident crossings.
 
 use std::cell::RefCell;
 
 use crate::coincidence::{Event, Plain, States, settle};
 use crate::expression::{Expression, eval};
 use crate::solid::{SolidModel, SolidRay};
-
-/// A point where a ray crosses the boundary of a solid.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Transition {
-    /// Parameter of the [`SolidRay`].
-    pub t: f64,
-    pub leaf: u32,
-    pub face: u32,
-    /// The ray is in the solid after it.
-    pub entering: bool,
-    /// The leaf's outward normal points into the solid: the wall of a subtraction.
-    pub flipped: bool,
-    /// The leaf is one of several with coincident faces here.
-    pub shared: bool,
-}
+use crate::transition::Transition;
 
 #[derive(Default)]
 struct Scratch {

@@ -1,0 +1,10 @@
+//! What the thesis settled on (section 4.2): solids with a mesh among their operands get a KD tree over their leaves, all
+//! others are traced through the operator tree with its boxes; plain geometry is Embree's own. The thesis had to: its
+//! operator tree could not be traced with meshes.
+
+use crate::solid::SolidModel;
+use crate::strategies::whole::Structure;
+
+pub fn structure(solid: &SolidModel) -> Structure {
+    Structure::tree(solid)
+}

@@ -1,0 +1,148 @@
+//! The default: cells with simplified expressions (`crate::cells`) are Embree's primitives, visited front to back.
+
+use arsc_geometry::Aabb;
+
+use crate::cells::{self, CellSet, Line, Window};
+use crate::level::Solids;
+use crate::query::{Extent, Mode, Query, slab};
+use crate::solid::SolidRay;
+use crate::strategies::{SolidTracer, oracle};
+
+/// A solid, or the part of it beyond its core, that Embree cannot hold.
+#[derive(Clone, Copy, Debug)]
+enum Open {
+    /// Whole solids.
+    Whole { solid: u32 },
+    /// The cell is what is left of the expression outside the core.
+    Outer { cell: u32, core: Aabb },
+}
+
+#[derive(Default)]
+pub struct Local {
+    cells: CellSet,
+    outer: CellSet,
+    open: Vec<Open>,
+}
+
+impl Local {
+    pub fn build(solids: &Solids) -> Local {
+        let mut local = Local::default();
+        for (number, solid) in solids.numbered() {
+            let core = cells::core(solid);
+            if !core.is_empty() && !Extent::admits(&core) {
+                local.open.push(Open::Whole { solid: number });
+            } else {
+                cells::append_solid(&mut local.cells, number, solid);
+                if let Some((cell, core)) = cells::append_outer(&mut local.outer, number, solid) {
+                    local.open.push(Open::Outer { cell, core });
+                }
+            }
+        }
+        local
+    }
+
+    fn visit_whole(&self, solids: &Solids, solid: u32, query: &mut Query) {
+        if solids.is_left_out(solid, query) {
+            return;
+        }
+        query.tests += 1;
+        let (ray, view) = (solids.near_ray(solid, query), query.view);
+        oracle::transitions(&solids.models[solid as usize], &ray, |transition| {
+            query.offer(solids.candidate(solid, transition, &ray, &view))
+        });
+    }
+
+    /// `stretch` is where the ray is in the cell.
+    fn visit_cell(
+        &self,
+        solids: &Solids,
+        set: &CellSet,
+        cell: u32,
+        ray: &SolidRay,
+        stretch: (f64, f64),
+        query: &mut Query,
+    ) {
+        let cell = &set.cells[cell as usize];
+        if solids.is_left_out(cell.solid, query) {
+            return;
+        }
+        let view = query.view;
+        let low = stretch.0.max(ray.start);
+        let high = stretch.1.min(ray.end);
+        if low > high {
+            return;
+        }
+        query.tests += 1;
+        let solid = &solids.models[cell.solid as usize];
+        let window = Window { low, high, start: ray.start, tolerance: solid.tolerance };
+        let line = Line {
+            solid,
+            origin: ray.origin,
+            dir: ray.dir,
+            inverse_dir: view.inverse_dir,
+            inverse_square: view.inverse_square,
+            key: u64::from(view.first_solid + cell.solid) << 32,
+        };
+        if query.mode == Mode::Collect {
+            let mut found = vec![];
+            set.transitions(cell, &line, &window, &mut query.scratch, |transition| {
+                found.push(transition);
+                true
+            });
+            for transition in found {
+                query.offer(solids.candidate(cell.solid, transition, ray, &view));
+            }
+            return;
+        }
+        let mut found = None;
+        set.transitions(cell, &line, &window, &mut query.scratch, |transition| {
+            found = Some(transition);
+            false
+        });
+        if let Some(transition) = found {
+            query.offer(solids.candidate(cell.solid, transition, ray, &view));
+        }
+    }
+}
+
+impl SolidTracer for Local {
+    fn primitive_count(&self) -> usize {
+        self.cells.cells.len()
+    }
+
+    fn primitive_bounds(&self, _: &Solids, primitive: u32) -> Aabb {
+        self.cells.cells[primitive as usize].bounds
+    }
+
+    fn bytes(&self) -> usize {
+        self.cells.bytes() + self.outer.bytes()
+    }
+
+    fn visit_open(&self, solids: &Solids, query: &mut Query) {
+        for open in &self.open {
+            if query.blocked {
+                return;
+            }
+            match *open {
+                Open::Whole { solid } => self.visit_whole(solids, solid, query),
+                Open::Outer { cell, core } => {
+                    let ray = solids.near_ray(self.outer.cells[cell as usize].solid, query);
+                    let (low, high) = slab(&core, ray.origin, query.view.inverse_dir);
+                    if low <= high && !core.is_empty() {
+                        self.visit_cell(solids, &self.outer, cell, &ray, (f64::NEG_INFINITY, low), query);
+                        self.visit_cell(solids, &self.outer, cell, &ray, (high, f64::INFINITY), query);
+                    } else {
+                        self.visit_cell(solids, &self.outer, cell, &ray, (f64::NEG_INFINITY, f64::INFINITY), query);
+                    }
+                }
+            }
+        }
+    }
+
+    fn visit(&self, solids: &Solids, primitive: u32, query: &mut Query) {
+        let cell = &self.cells.cells[primitive as usize];
+        let ray = solids.near_ray(cell.solid, query);
+        let stretch = slab(&cell.bounds, ray.origin, query.view.inverse_dir);
+        self.visit_cell(solids, &self.cells, primitive, &ray, stretch, query);
+    }
+}

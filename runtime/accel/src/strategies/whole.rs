@@ -1,0 +1,166 @@
+//! Solids as single user primitives of Embree, met as a whole (thesis, sections 3.5.2, 3.5.3 and 4.2).
+//!
+//! The primitive's callback is told how far the nearest hit so far is; beyond it nothing is looked for.
+
+use arsc_geometry::Aabb;
+
+use crate::level::Solids;
+use crate::query::{Extent, Query};
+use crate::solid::{SolidModel, SolidRay};
+use crate::strategies::kd::SolidKd;
+use crate::strategies::kd_tree::Mailbox;
+use crate::strategies::operators::{Gathered, Operators, Values};
+use crate::strategies::tree::{BoxTree, Open};
+use crate::strategies::{PAD, SolidTracer, oracle};
+
+/// Buffers of a thread for evaluations of whole trees.
+#[derive(Debug, Default)]
+pub struct WholeScratch {
+    pub gathered: Gathered,
+    pub values: Values,
+    pub mailbox: Mailbox,
+    pub open: Vec<Open>,
+    /// Leaves that a traversal has come to: solid and leaf.
+    pub met: Vec<(u32, u32)>,
+}
+
+impl WholeScratch {
+    pub fn clear(&mut self) {
+        self.gathered.clear();
+        self.met.clear();
+    }
+
+    /// Where the collection of a traversal begins: one may run within another.
+    pub fn mark(&self) -> usize {
+        self.met.len()
+    }
+}
+
+/// What a solid is met by.
+pub enum Structure {
+    Oracle,
+    Tree(BoxTree, Operators),
+    Kd(SolidKd, Operators),
+}
+
+impl Structure {
+    pub fn tree(solid: &SolidModel) -> Structure {
+        Structure::Tree(BoxTree::new(solid, PAD * solid.tolerance), Operators::new(solid))
+    }
+
+    pub fn kd(solid: &SolidModel) -> Structure {
+        Structure::Kd(SolidKd::new(solid), Operators::new(solid))
+    }
+
+    fn bytes(&self) -> usize {
+        match self {
+            Structure::Oracle => 0,
+            Structure::Tree(tree, operators) => tree.bytes() + operators.bytes(),
+            Structure::Kd(kd, operators) => kd.bytes() + operators.bytes(),
+        }
+    }
+
+    fn cells(&self) -> usize {
+        match self {
+            Structure::Oracle => 1,
+            Structure::Tree(tree, _) => tree.len(),
+            Structure::Kd(kd, _) => kd.cells(),
+        }
+    }
+}
+
+pub struct PerSolid {
+    structures: Vec<Structure>,
+    /// Solids that are Embree's primitives.
+    primitives: Vec<u32>,
+    /// Solids that Embree cannot hold.
+    open: Vec<u32>,
+}
+
+impl PerSolid {
+    pub fn build(solids: &Solids, structure: impl Fn(&SolidModel) -> Structure) -> PerSolid {
+        let structures = solids.numbered().map(|(_, solid)| structure(solid)).collect();
+        let present = solids.numbered().filter(|(_, solid)| !solid.bounds.is_empty());
+        let (primitives, open): (Vec<_>, Vec<_>) = present.partition(|(_, solid)| Extent::admits(&solid.bounds));
+        let number = |(number, _): (u32, &SolidModel)| number;
+        PerSolid {
+            structures,
+            primitives: primitives.into_iter().map(number).collect(),
+            open: open.into_iter().map(number).collect(),
+        }
+    }
+
+    fn visit_solid(&self, solids: &Solids, solid: u32, query: &mut Query) {
+        if solids.is_left_out(solid, query) {
+            return;
+        }
+        query.tests += 1;
+        let (ray, model) = (solids.near_ray(solid, query), &*solids.models[solid as usize]);
+        match &self.structures[solid as usize] {
+            Structure::Oracle => {
+                let view = query.view;
+                oracle::transitions(model, &ray, |transition| {
+                    query.offer(solids.candidate(solid, transition, &ray, &view))
+                });
+            }
+            Structure::Tree(tree, operators) => evaluate(solids, solid, operators, &ray, query, |scratch| {
+                tree.gather(model, &ray, &mut scratch.open, &mut scratch.mailbox, &mut scratch.gathered);
+            }),
+            Structure::Kd(kd, operators) => evaluate(solids, solid, operators, &ray, query, |scratch| {
+                kd.gather(model, &ray, &mut scratch.mailbox, &mut scratch.gathered);
+            }),
+        }
+    }
+}
+
+/// Gathers the crossings of a solid's leaves, evaluates its tree, and offers what changes.
+pub fn evaluate(
+    solids: &Solids,
+    solid: u32,
+    operators: &Operators,
+    ray: &SolidRay,
+    query: &mut Query,
+    gather: impl FnOnce(&mut WholeScratch),
+) {
+    // Offering needs the query.
+    let mut scratch = std::mem::take(&mut query.scratch.whole);
+    gather(&mut scratch);
+    let view = query.view;
+    let WholeScratch { gathered, values, .. } = &mut scratch;
+    operators.transitions(&solids.models[solid as usize], gathered, values, |transition| {
+        query.offer(solids.candidate(solid, transition, ray, &view))
+    });
+    query.scratch.whole = scratch;
+}
+
+impl SolidTracer for PerSolid {
+    fn primitive_count(&self) -> usize {
+        self.primitives.len()
+    }
+
+    fn primitive_bounds(&self, solids: &Solids, primitive: u32) -> Aabb {
+        let solid = &solids.models[self.primitives[primitive as usize] as usize];
+        solid.bounds.dilated(solid.tolerance)
+    }
+
+    fn cell_count(&self) -> usize {
+        self.structures.iter().map(Structure::cells).sum()
+    }
+
+    fn bytes(&self) -> usize {
+        self.structures.iter().map(Structure::bytes).sum()
+    }
+
+    fn visit_open(&self, solids: &Solids, query: &mut Query) {
+        for &solid in &self.open {
+            if query.blocked {
+                return;
+            }
+            self.visit_solid(solids, solid, query);
+        }
+    }
+
+    fn visit(&self, solids: &Solids, primitive: u32, query: &mut Query) {
+        self.visit_solid(solids, self.primitives[primitive as usize], query);
+    }
+}
