@@ -17,8 +17,10 @@ mod material;
 mod node;
 mod print;
 mod read;
+mod shape_text;
 mod term;
 mod verify;
+mod write;
 
 pub use action::{Action, Exposure, Strategy};
 pub use builder::Builder;

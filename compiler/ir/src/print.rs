@@ -19,9 +19,11 @@
 use std::fmt::{self, Display, Formatter, Write};
 
 use arsc_diagnostics::Span;
-use arsc_geometry::{DAffine3, DVec3, Shape};
+use arsc_geometry::DVec3;
 use arsc_spectral::Spectrum;
 
+use crate::shape_text::open_shape;
+use crate::write::{Call, Float, Floats};
 use crate::{
     Action, Attributes, Bsdf, Camera, CutRule, Emitter, Environment, Exposure, Filter, Ir, Leaf, Light, Material,
     NodeId, NodeKind, Precedence, Projection, Surface,
@@ -55,91 +57,6 @@ impl Display for Ir {
 
 /// Something as the text form writes it.
 struct Text<'a, T>(&'a T);
-
-/// Writes `name(argument: value, …)`.
-struct Call<'a, 'b> {
-    f: &'a mut Formatter<'b>,
-    empty: bool,
-}
-
-impl<'a, 'b> Call<'a, 'b> {
-    fn new(f: &'a mut Formatter<'b>, name: &str) -> Result<Call<'a, 'b>, fmt::Error> {
-        write!(f, "{name}(")?;
-        Ok(Call { f, empty: true })
-    }
-
-    fn value(mut self, value: impl Display) -> Result<Self, fmt::Error> {
-        self.separate()?;
-        write!(self.f, "{value}")?;
-        Ok(self)
-    }
-
-    fn arg(mut self, name: &str, value: impl Display) -> Result<Self, fmt::Error> {
-        self.separate()?;
-        write!(self.f, "{name}: {value}")?;
-        Ok(self)
-    }
-
-    fn float(self, name: &str, value: f64) -> Result<Self, fmt::Error> {
-        self.arg(name, Float(value))
-    }
-
-    fn point(self, name: &str, value: DVec3) -> Result<Self, fmt::Error> {
-        self.arg(name, Floats(&value.to_array()))
-    }
-
-    fn index(self, name: &str, prefix: &str, value: Option<u32>) -> Result<Self, fmt::Error> {
-        match value {
-            Some(value) => self.arg(name, format_args!("{prefix}{value}")),
-            None => Ok(self),
-        }
-    }
-
-    fn map(self, map: &DAffine3) -> Result<Self, fmt::Error> {
-        let columns = map.to_cols_array();
-        let bits = |columns: &[f64]| -> Vec<u64> { columns.iter().map(|x| x.to_bits()).collect() };
-        let identity = DAffine3::IDENTITY.to_cols_array();
-        if bits(&columns) == bits(&identity) {
-            Ok(self)
-        } else if bits(&columns[..9]) == bits(&identity[..9]) {
-            self.point("at", map.translation)
-        } else {
-            self.arg("map", Floats(&columns))
-        }
-    }
-
-    fn separate(&mut self) -> fmt::Result {
-        if !std::mem::take(&mut self.empty) {
-            self.f.write_str(", ")?;
-        }
-        Ok(())
-    }
-
-    fn end(self) -> fmt::Result {
-        self.f.write_char(')')
-    }
-}
-
-struct Float(f64);
-
-impl Display for Float {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?}", self.0)
-    }
-}
-
-struct Floats<'a>(&'a [f64]);
-
-impl Display for Floats<'_> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_char('[')?;
-        for (i, value) in self.0.iter().enumerate() {
-            let comma = if i > 0 { ", " } else { "" };
-            write!(f, "{comma}{value:?}")?;
-        }
-        f.write_char(']')
-    }
-}
 
 /// A string literal: only `"`, `\` and control characters are escaped.
 struct Quoted<'a>(&'a str);
@@ -273,23 +190,6 @@ impl Display for Text<'_, Leaf> {
             }
         };
         call.map(map)?.index("material", "m", material.map(|id| id.0))?.end()
-    }
-}
-
-fn open_shape<'a, 'b>(f: &'a mut Formatter<'b>, shape: &Shape) -> Result<Call<'a, 'b>, fmt::Error> {
-    match *shape {
-        Shape::Sphere { radius } => Call::new(f, "sphere")?.float("radius", radius),
-        Shape::Box { min, max } => Call::new(f, "box")?.point("min", min)?.point("max", max),
-        Shape::Cylinder { radius, height } => {
-            Call::new(f, "cylinder")?.float("radius", radius)?.float("height", height)
-        }
-        Shape::InfiniteCylinder { radius } => Call::new(f, "infinite_cylinder")?.float("radius", radius),
-        Shape::Cone { base_radius, top_radius, height } => Call::new(f, "cone")?
-            .float("base_radius", base_radius)?
-            .float("top_radius", top_radius)?
-            .float("height", height),
-        Shape::Torus { major, minor } => Call::new(f, "torus")?.float("major", major)?.float("minor", minor),
-        Shape::HalfSpace => Call::new(f, "half_space"),
     }
 }
 

@@ -7,10 +7,11 @@ use std::fmt;
 use std::sync::Arc;
 
 use arsc_diagnostics::{SourceId, Span};
-use arsc_geometry::{DVec3, Shape};
+use arsc_geometry::DVec3;
 use arsc_spectral::Spectrum;
 
 use crate::args::{Args, float, float_list, floats, index, integer};
+use crate::shape_text::shape;
 use crate::term::{Cursor, Fault, Term, TermKind};
 use crate::{
     Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Emitter, Environment, Exposure, Filter, Ir, Leaf, Light,
@@ -272,23 +273,6 @@ fn leaf(args: &mut Args, ir: &Ir) -> Result<Leaf, Fault> {
     Ok(Leaf::Surface { surface, parent_from_object, material })
 }
 
-fn shape(args: &mut Args) -> Result<Option<Shape>, Fault> {
-    Ok(Some(match args.name {
-        "sphere" => Shape::Sphere { radius: args.float("radius")? },
-        "box" => Shape::Box { min: args.point("min")?, max: args.point("max")? },
-        "cylinder" => Shape::Cylinder { radius: args.float("radius")?, height: args.float("height")? },
-        "infinite_cylinder" => Shape::InfiniteCylinder { radius: args.float("radius")? },
-        "cone" => Shape::Cone {
-            base_radius: args.float("base_radius")?,
-            top_radius: args.float("top_radius")?,
-            height: args.float("height")?,
-        },
-        "torus" => Shape::Torus { major: args.float("major")?, minor: args.float("minor")? },
-        "half_space" => Shape::HalfSpace,
-        _ => return Ok(None),
-    }))
-}
-
 fn surface(args: &mut Args) -> Result<Surface, Fault> {
     fn corners<const N: usize>(args: &mut Args) -> Result<[DVec3; N], Fault> {
         let mut corners = [DVec3::ZERO; N];
@@ -443,16 +427,7 @@ mod tests {
     }
 
     fn any_leaf() -> impl Strategy2<Value = Leaf> {
-        let shape = prop_oneof![
-            positive().prop_map(|radius| Shape::Sphere { radius }),
-            (vector(), [positive(), positive(), positive()])
-                .prop_map(|(min, size)| Shape::Box { min, max: min + min.abs() + DVec3::from_array(size) }),
-            (positive(), positive()).prop_map(|(radius, height)| Shape::Cylinder { radius, height }),
-            positive().prop_map(|radius| Shape::InfiniteCylinder { radius }),
-            (positive(), positive()).prop_map(|(r, height)| Shape::Cone { base_radius: r, top_radius: 0.0, height }),
-            (positive(), positive()).prop_map(|(major, minor)| Shape::Torus { major, minor }),
-            Just(Shape::HalfSpace),
-        ];
+        let shape = crate::shape_text::tests::any_shape();
         let surface = prop_oneof![
             [vector(), vector(), vector()].prop_map(Surface::Triangle),
             [vector(), vector(), vector(), vector()].prop_map(Surface::Quad),

@@ -103,15 +103,5 @@ fn hash_surface(surface: &Surface, hasher: &mut FxHasher) {
 
 fn hash_shape(shape: &Shape, hasher: &mut FxHasher) {
     std::mem::discriminant(shape).hash(hasher);
-    let numbers: &[f64] = match shape {
-        Shape::Sphere { radius } | Shape::InfiniteCylinder { radius } => &[*radius],
-        Shape::Box { min, max } => &[min.x, min.y, min.z, max.x, max.y, max.z],
-        Shape::Cylinder { radius, height } => &[*radius, *height],
-        Shape::Cone { base_radius, top_radius, height } => &[*base_radius, *top_radius, *height],
-        Shape::Torus { major, minor } => &[*major, *minor],
-        Shape::HalfSpace => &[],
-    };
-    for &x in numbers {
-        hash_f64(x, hasher);
-    }
+    shape.for_each_size(&mut |x| hash_f64(x, hasher));
 }

@@ -238,10 +238,23 @@ fn one_of_each_block() {
 
 #[test]
 fn not_implemented_is_said() {
-    expect("scene { superquadric() }", &[("E0901", "superquadric()")]);
+    let with = |bsdf: &str| format!("import std.material {{ phosphor }}\nscene {{ sphere() |> with({bsdf}) }}");
+    expect(&with("phosphor(0.5)"), &[("E0901", "phosphor(0.5)")]);
     // Arguments are checked all the same.
-    expect("scene { superquadric(e1: \"a\") }", &[("E0102", "\"a\""), ("E0901", "superquadric(e1: \"a\")")]);
-    expect("scene { sphere() - lathe([(1, 2), (3, 4)]) }", &[("E0901", "lathe([(1, 2), (3, 4)])")]);
+    expect(&with("phosphor(\"a\")"), &[("E0102", "\"a\""), ("E0901", "phosphor(\"a\")")]);
+}
+
+#[test]
+fn sizes_that_make_no_solid() {
+    for (bad, label) in [
+        ("paraboloid(radius: -1)", "-1"),
+        ("paraboloid(radius: 1e200, height: 1e-200)", "paraboloid(radius: 1e200, height: 1e-200)"),
+        ("hyperboloid(sheets: 3)", "3"),
+        ("hyperboloid(radius: 1, height: 2, slope: 1, sheets: 2)", "2"),
+        ("hyperboloid(slope: 0)", "0"),
+    ] {
+        expect(&format!("scene {{ {bad} }}"), &[("E0201", label)]);
+    }
 }
 
 #[test]

@@ -17,66 +17,70 @@ pub struct AreaPoint {
 }
 
 impl Shape {
-    /// Areas of the faces in object space; empty for unbounded shapes.
-    fn face_areas(&self) -> ([f64; 6], usize) {
-        let mut areas = [0.0; 6];
-        let count = match *self {
-            Shape::Sphere { radius } => {
-                areas[0] = 4.0 * std::f64::consts::PI * radius * radius;
-                1
-            }
-            Shape::Box { min, max } => {
-                areas = cuboid::areas(min, max);
-                6
-            }
-            Shape::Cylinder { radius, height } => {
-                areas[..3].copy_from_slice(&cone::areas(radius, radius, height));
-                3
-            }
-            Shape::Cone { base_radius, top_radius, height } => {
-                areas[..3].copy_from_slice(&cone::areas(base_radius, top_radius, height));
-                3
-            }
-            Shape::Torus { major, minor } => {
-                areas[0] = torus::area(major, minor);
-                1
-            }
-            Shape::InfiniteCylinder { .. } | Shape::HalfSpace => 0,
-        };
-        (areas, count)
+    /// Number of faces; numbers from 0. The face may be empty.
+    pub fn face_count(&self) -> u32 {
+        match self {
+            Shape::Sphere { .. } | Shape::Torus { .. } | Shape::HalfSpace | Shape::InfiniteCylinder { .. } => 1,
+            Shape::Box { .. } => 6,
+            Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::Paraboloid(_) | Shape::Hyperboloid(_) => 3,
+        }
+    }
+
+    /// Area of a face in object space; infinite for unbounded shapes.
+    pub fn face_area(&self, face: u32) -> f64 {
+        let face = face as usize;
+        match *self {
+            Shape::Sphere { radius } => 4.0 * std::f64::consts::PI * radius * radius,
+            Shape::Box { min, max } => cuboid::areas(min, max)[face],
+            Shape::Cylinder { radius, height } => cone::areas(radius, radius, height)[face],
+            Shape::Cone { base_radius, top_radius, height } => cone::areas(base_radius, top_radius, height)[face],
+            Shape::Torus { major, minor } => torus::area(major, minor),
+            Shape::InfiniteCylinder { .. } | Shape::HalfSpace => f64::INFINITY,
+            Shape::Paraboloid(ref paraboloid) => paraboloid.areas()[face],
+            Shape::Hyperboloid(ref hyperboloid) => hyperboloid.areas()[face],
+        }
     }
 
     /// Surface area in object space; infinite for unbounded shapes.
     pub fn area(&self) -> f64 {
-        match self.face_areas() {
-            (_, 0) => f64::INFINITY,
-            (areas, count) => areas[..count].iter().sum(),
-        }
+        (0..self.face_count()).map(|face| self.face_area(face)).sum()
     }
 
-    /// A point uniform over the surface, with its face; `None` for unbounded shapes. `u` in [0, 1)².
-    fn sample(&self, u: [f64; 2]) -> Option<(DVec3, u32)> {
-        let (areas, count) = self.face_areas();
-        let total: f64 = areas[..count].iter().sum();
-        let mut rest = u[0] * total;
+    /// A face chosen in proportion to area, and what is left of `u`, uniform again.
+    fn choose_face(&self, u: f64) -> (u32, f64) {
+        let last = self.face_count() - 1;
+        let mut rest = u * self.area();
         let mut face = 0;
-        while face + 1 < count && rest >= areas[face] {
-            rest -= areas[face];
+        let mut area = self.face_area(0);
+        while face < last && rest >= area {
+            rest -= area;
             face += 1;
+            area = self.face_area(face);
         }
-        // What is left of the choice of the face is uniform again.
-        let inner = if count > 0 && areas[face] > 0.0 { (rest / areas[face]).clamp(0.0, 1.0) } else { 0.0 };
-        let u = [inner, u[1]];
-        let face = face as u32;
-        let p = match *self {
+        (face, if area > 0.0 { (rest / area).clamp(0.0, 1.0) } else { 0.0 })
+    }
+
+    /// A point uniform over a face; `None` for unbounded shapes. `u` in [0, 1)².
+    fn sample_face(&self, face: u32, u: [f64; 2]) -> Option<DVec3> {
+        Some(match *self {
             Shape::Sphere { radius } => sphere::sample(radius, u),
             Shape::Box { min, max } => cuboid::sample(min, max, face, u),
             Shape::Cylinder { radius, height } => cone::sample(radius, radius, height, face, u),
             Shape::Cone { base_radius, top_radius, height } => cone::sample(base_radius, top_radius, height, face, u),
             Shape::Torus { major, minor } => torus::sample(major, minor, u),
             Shape::InfiniteCylinder { .. } | Shape::HalfSpace => return None,
-        };
-        Some((p, face))
+            Shape::Paraboloid(ref paraboloid) => paraboloid.sample(face, u),
+            Shape::Hyperboloid(ref hyperboloid) => hyperboloid.sample(face, u),
+        })
+    }
+
+    /// A point uniform over the surface, with its face; `None` for unbounded shapes. `u` in [0, 1)².
+    fn sample(&self, u: [f64; 2]) -> Option<(DVec3, u32)> {
+        if !self.is_bounded() {
+            return None;
+        }
+        let (face, rest) = self.choose_face(u[0]);
+        self.sample_face(face, [rest, u[1]]).map(|p| (p, face))
     }
 }
 

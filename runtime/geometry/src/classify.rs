@@ -6,6 +6,7 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::region::Region;
 use crate::{Aabb, Direct, Placed, Shape};
 
 /// How a box lies to a solid.
@@ -29,6 +30,11 @@ impl Placed {
             return classify_direct(direct, cell);
         }
         let region = Region::new(self, cell);
+        match self.shape() {
+            Shape::Paraboloid(paraboloid) => return paraboloid.classify(&region),
+            Shape::Hyperboloid(hyperboloid) => return hyperboloid.classify(&region),
+            _ => {}
+        }
         if region.outside(self.shape()) {
             Classification::Outside
         } else if region.inside(self.shape()) {
@@ -64,72 +70,7 @@ fn classify_direct(direct: &Direct, cell: &Aabb) -> Classification {
     }
 }
 
-/// A box seen from object space.
-struct Region {
-    c: DVec3,
-    e: [DVec3; 3],
-}
-
 impl Region {
-    fn new(placed: &Placed, cell: &Aabb) -> Region {
-        let map = placed.object_from_world();
-        let half = cell.extent() * 0.5;
-        let m = &map.matrix3;
-        Region { c: map.transform_point3(cell.center()), e: [m.x_axis * half.x, m.y_axis * half.y, m.z_axis * half.z] }
-    }
-
-    /// Half the width along `n`.
-    fn reach(&self, n: DVec3) -> f64 {
-        self.e.iter().map(|e| e.dot(n).abs()).sum()
-    }
-
-    fn z_range(&self) -> (f64, f64) {
-        let reach = self.e.iter().map(|e| e.z.abs()).sum::<f64>();
-        (self.c.z - reach, self.c.z + reach)
-    }
-
-    fn corners(&self) -> impl Iterator<Item = DVec3> + '_ {
-        (0..8).map(|i| {
-            let sign = |bit: usize| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
-            self.c + self.e[0] * sign(0) + self.e[1] * sign(1) + self.e[2] * sign(2)
-        })
-    }
-
-    /// A point of the region close to the nearest one to `target`, in three dimensions or (flat) in x and y.
-    fn nearest(&self, target: DVec3, flat: bool) -> DVec3 {
-        let flatten = |v: DVec3| if flat { DVec3::new(v.x, v.y, 0.0) } else { v };
-        let mut at = flatten(self.c - target);
-        let e = self.e.map(flatten);
-        let mut s = [0.0f64; 3];
-        for _ in 0..4 {
-            for i in 0..3 {
-                let ee = e[i].length_squared();
-                if ee > 0.0 {
-                    let next = (s[i] - at.dot(e[i]) / ee).clamp(-1.0, 1.0);
-                    at += e[i] * (next - s[i]);
-                    s[i] = next;
-                }
-            }
-        }
-        at
-    }
-
-    /// A lower bound on the distance to `target`, proved by a separating direction.
-    fn distance(&self, target: DVec3) -> f64 {
-        match self.nearest(target, false).try_normalize() {
-            Some(n) => (self.c - target).dot(n) - self.reach(n),
-            None => 0.0,
-        }
-    }
-
-    /// A lower bound on the distance to the z axis, with the direction that proves it.
-    fn axis_distance(&self) -> (f64, DVec3) {
-        match self.nearest(DVec3::ZERO, true).try_normalize() {
-            Some(n) => (self.c.dot(n) - self.reach(n), n),
-            None => (0.0, DVec3::X),
-        }
-    }
-
     fn outside(&self, shape: &Shape) -> bool {
         match *shape {
             Shape::Sphere { radius } => self.distance(DVec3::ZERO) > radius,
@@ -141,12 +82,9 @@ impl Region {
             Shape::Cone { base_radius, top_radius, height } => self.misses_cone(base_radius, top_radius, height),
             Shape::Torus { major, minor } => self.misses_torus(major, minor),
             Shape::HalfSpace => self.z_range().0 > 0.0,
+            // They classify regions themselves.
+            Shape::Paraboloid(_) | Shape::Hyperboloid(_) => false,
         }
-    }
-
-    fn beyond_slab(&self, low: f64, high: f64) -> bool {
-        let (z0, z1) = self.z_range();
-        z0 > high || z1 < low
     }
 
     /// Separated from an upright cylinder by a direction across its rim: that to the nearest point from the middle
@@ -186,17 +124,6 @@ impl Region {
     /// Distance of the centre from the tube's centre circle: 1-Lipschitz.
     fn tube_distance(&self, major: f64) -> f64 {
         (self.c.truncate().length() - major).hypot(self.c.z)
-    }
-
-    /// Distance of the farthest corner from the centre.
-    fn half_diagonal(&self) -> f64 {
-        self.corners().map(|p| p.distance_squared(self.c)).fold(0.0, f64::max).sqrt()
-    }
-
-    /// Bounds on the distance from the z axis.
-    fn rho_range(&self) -> (f64, f64) {
-        let far = self.corners().map(|p| p.truncate().length_squared()).fold(0.0, f64::max).sqrt();
-        (self.axis_distance().0.max(0.0), far)
     }
 
     /// Separating axes of two parallelepipeds: both sets of face normals and the edge products.

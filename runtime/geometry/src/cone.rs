@@ -4,18 +4,19 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
+use crate::quadratic::{Inside, not_positive};
 use crate::{Crossings, LocalPoint};
 
-const SIDE: u32 = 0;
-const BOTTOM: u32 = 1;
-const TOP: u32 = 2;
+pub(crate) const SIDE: u32 = 0;
+pub(crate) const BOTTOM: u32 = 1;
+pub(crate) const TOP: u32 = 2;
 
-/// Where `0 <= z <= height`: entry and exit with their faces; unbounded for rays across, `None` outside.
-fn slab(height: f64, origin: DVec3, dir: DVec3) -> Option<(f64, u32, f64, u32)> {
+/// Where `low <= z <= high`: entry and exit with their faces; unbounded for rays across, `None` outside.
+pub(crate) fn slab(low: f64, high: f64, origin: DVec3, dir: DVec3) -> Option<(f64, u32, f64, u32)> {
     if dir.z == 0.0 {
-        return (0.0..=height).contains(&origin.z).then_some((f64::NEG_INFINITY, SIDE, f64::INFINITY, SIDE));
+        return (low..=high).contains(&origin.z).then_some((f64::NEG_INFINITY, SIDE, f64::INFINITY, SIDE));
     }
-    let (bottom, top) = (-origin.z / dir.z, (height - origin.z) / dir.z);
+    let (bottom, top) = ((low - origin.z) / dir.z, (high - origin.z) / dir.z);
     Some(if dir.z > 0.0 { (bottom, BOTTOM, top, TOP) } else { (top, TOP, bottom, BOTTOM) })
 }
 
@@ -44,7 +45,7 @@ pub(crate) fn infinite_cylinder_crossings(radius: f64, origin: DVec3, dir: DVec3
 }
 
 pub(crate) fn cylinder_crossings(radius: f64, height: f64, origin: DVec3, dir: DVec3) -> Crossings {
-    let (Some(caps), Some(side)) = (slab(height, origin, dir), infinite_side(radius, origin, dir)) else {
+    let (Some(caps), Some(side)) = (slab(0.0, height, origin, dir), infinite_side(radius, origin, dir)) else {
         return Crossings::NONE;
     };
     intersect(caps, side)
@@ -61,7 +62,7 @@ fn intersect(caps: (f64, u32, f64, u32), side: (f64, f64)) -> Crossings {
 /// The side is `x² + y² = r(z)²` with `r(z) = base + slope z`; between the caps `r >= 0`, so the mirrored nappe of
 /// the double cone is cut off by the slab, and what is left is convex: one interval.
 pub(crate) fn cone_crossings(base: f64, top: f64, height: f64, origin: DVec3, dir: DVec3) -> Crossings {
-    let Some(caps) = slab(height, origin, dir) else { return Crossings::NONE };
+    let Some(caps) = slab(0.0, height, origin, dir) else { return Crossings::NONE };
     // From the point nearest to the middle of the cone nothing large is subtracted.
     let shift = (DVec3::new(0.0, 0.0, 0.5 * height) - origin).dot(dir);
     let o = origin + dir * shift;
@@ -71,31 +72,22 @@ pub(crate) fn cone_crossings(base: f64, top: f64, height: f64, origin: DVec3, di
     let half_b = o.truncate().dot(dir.truncate()) - r * dr;
     let c = (o.truncate().length() - r) * (o.truncate().length() + r);
     let (z0, z1) = (caps.0 - shift, caps.2 - shift);
-    let Some((t0, t1)) = not_positive(a, half_b, c, z0, z1) else { return Crossings::NONE };
+    let Some((t0, t1)) = one_interval(a, half_b, c, z0, z1) else { return Crossings::NONE };
     intersect(caps, (t0 + shift, t1 + shift))
 }
 
-/// Where `a t² + 2 b t + c <= 0` between `z0` and `z1`, known to be one interval; ends may lie beyond the bounds.
-fn not_positive(a: f64, b: f64, c: f64, z0: f64, z1: f64) -> Option<(f64, f64)> {
-    let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
-    let discriminant = b * b - a * c;
-    if discriminant <= 0.0 {
-        // No sign change: the double cone is missed, or (a < 0) the line stays within.
-        return (a < 0.0 || (a == 0.0 && c <= 0.0)).then_some(everywhere);
+/// Where the quadratic is not positive between `z0` and `z1`, known to be one interval; ends may lie beyond the bounds.
+fn one_interval(a: f64, half_b: f64, c: f64, z0: f64, z1: f64) -> Option<(f64, f64)> {
+    match not_positive(a, half_b, c) {
+        Inside::Never => None,
+        Inside::Always => Some((f64::NEG_INFINITY, f64::INFINITY)),
+        Inside::Between(low, high) => Some((low, high)),
+        Inside::Beyond(low, high) => {
+            // One nappe before `low`, the other after `high`; the slab holds only one of them.
+            let (before, after) = (low.min(z1) - z0, z1 - high.max(z0));
+            Some(if before > after { (f64::NEG_INFINITY, low) } else { (high, f64::INFINITY) })
+        }
     }
-    let q = -(b + discriminant.sqrt().copysign(b));
-    if a == 0.0 {
-        let root = c / q;
-        return Some(if b > 0.0 { (f64::NEG_INFINITY, root) } else { (root, f64::INFINITY) });
-    }
-    let (r0, r1) = (q / a, if q == 0.0 { 0.0 } else { c / q });
-    let (low, high) = if r0 < r1 { (r0, r1) } else { (r1, r0) };
-    if a > 0.0 {
-        return Some((low, high));
-    }
-    // One nappe before `low`, the other after `high`; the slab holds only one of them.
-    let (before, after) = (low.min(z1) - z0, z1 - high.max(z0));
-    Some(if before > after { (f64::NEG_INFINITY, low) } else { (high, f64::INFINITY) })
 }
 
 /// Also serves cylinders (`base == top`); `height` may be infinite then.
@@ -103,11 +95,7 @@ pub(crate) fn surface(base: f64, top: f64, height: f64, p: DVec3, face: u32) -> 
     let azimuth = p.y.atan2(p.x);
     let (sin, cos) = azimuth.sin_cos();
     if face != SIDE {
-        let high = face == TOP;
-        let (z, n) = if high { (height, DVec3::Z) } else { (0.0, DVec3::NEG_Z) };
-        let radius = if high { top } else { base };
-        let uv = DVec2::new(0.5 + 0.5 * p.x / radius, 0.5 + 0.5 * p.y / radius);
-        return LocalPoint { p: DVec3::new(p.x, p.y, z), n, uv, dpdu: DVec3::X };
+        return if face == TOP { disk_surface(top, height, 1.0, p) } else { disk_surface(base, 0.0, -1.0, p) };
     }
     let slope = if height.is_finite() { (top - base) / height } else { 0.0 };
     let n = DVec3::new(cos, sin, -slope).normalize();
@@ -121,6 +109,19 @@ pub(crate) fn surface(base: f64, top: f64, height: f64, p: DVec3, face: u32) -> 
     LocalPoint { p: DVec3::new(radius * cos, radius * sin, z), n, uv, dpdu: DVec3::new(-sin, cos, 0.0) }
 }
 
+/// The end face at a height, its normal along z times `sign`; u and v over the square about the disk.
+pub(crate) fn disk_surface(radius: f64, z: f64, sign: f64, p: DVec3) -> LocalPoint {
+    let uv = DVec2::new(0.5 + 0.5 * p.x / radius, 0.5 + 0.5 * p.y / radius);
+    LocalPoint { p: DVec3::new(p.x, p.y, z), n: DVec3::Z * sign, uv, dpdu: DVec3::X }
+}
+
+/// Uniform over the disk at a height.
+pub(crate) fn disk_point(radius: f64, z: f64, u: [f64; 2]) -> DVec3 {
+    let (sin, cos) = (TAU * u[0]).sin_cos();
+    let rho = radius * u[1].sqrt();
+    DVec3::new(rho * cos, rho * sin, z)
+}
+
 /// Areas of side, bottom and top.
 pub(crate) fn areas(base: f64, top: f64, height: f64) -> [f64; 3] {
     let pi = std::f64::consts::PI;
@@ -128,16 +129,21 @@ pub(crate) fn areas(base: f64, top: f64, height: f64) -> [f64; 3] {
 }
 
 pub(crate) fn sample(base: f64, top: f64, height: f64, face: u32, u: [f64; 2]) -> DVec3 {
-    let (sin, cos) = (TAU * u[0]).sin_cos();
-    let (radius, z) = match face {
-        BOTTOM => (base * u[1].sqrt(), 0.0),
-        TOP => (top * u[1].sqrt(), height),
+    match face {
+        BOTTOM => disk_point(base, 0.0, u),
+        TOP => disk_point(top, height, u),
         _ => {
-            // The density along the slant grows as the radius: its square is uniform.
-            let radius = (base * base + u[1] * (top * top - base * base)).max(0.0).sqrt();
-            let along = if radius + base > 0.0 { u[1] * (top + base) / (radius + base) } else { 0.0 };
-            (radius, height * along.clamp(0.0, 1.0))
+            let (along, radius) = frustum_sample(base, top, u[1]);
+            let (sin, cos) = (TAU * u[0]).sin_cos();
+            DVec3::new(radius * cos, radius * sin, height * along)
         }
-    };
-    DVec3::new(radius * cos, radius * sin, z)
+    }
+}
+
+/// Uniform along the slant of a frustum by area: the fraction of the slant, and the radius there. The density grows as
+/// the radius, so that its square is uniform.
+pub(crate) fn frustum_sample(base: f64, top: f64, u: f64) -> (f64, f64) {
+    let radius = (base * base + u * (top * top - base * base)).max(0.0).sqrt();
+    let along = if radius + base > 0.0 { u * (top + base) / (radius + base) } else { 0.0 };
+    (along.clamp(0.0, 1.0), radius)
 }

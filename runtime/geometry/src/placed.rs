@@ -241,6 +241,8 @@ fn extent_along(shape: &Shape, row: DVec3, inverse: &DAffine3, axis: usize) -> (
         Shape::InfiniteCylinder { radius } if row.z == 0.0 => disc(radius, 0.0),
         Shape::InfiniteCylinder { .. } => (f64::NEG_INFINITY, f64::INFINITY),
         Shape::HalfSpace => half_space_extent(inverse, axis, row),
+        Shape::Paraboloid(ref paraboloid) => (paraboloid.farthest(-row).dot(row), paraboloid.farthest(row).dot(row)),
+        Shape::Hyperboloid(ref hyperboloid) => (-hyperboloid.support(-row), hyperboloid.support(row)),
     }
 }
 

@@ -2,26 +2,45 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::{Aabb, Crossings, cone, cuboid, half_space, sphere, torus};
+use crate::{Aabb, Crossings, Hyperboloid, Paraboloid, cone, cuboid, half_space, sphere, torus};
 
 /// A closed solid in object space. Sizes are positive and finite; the compiler guarantees it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// Centre at the origin.
-    Sphere { radius: f64 },
+    Sphere {
+        radius: f64,
+    },
     /// Axis-aligned, `min < max` in every axis.
-    Box { min: DVec3, max: DVec3 },
+    Box {
+        min: DVec3,
+        max: DVec3,
+    },
     /// About the z axis, from z = 0 to z = `height`.
-    Cylinder { radius: f64, height: f64 },
+    Cylinder {
+        radius: f64,
+        height: f64,
+    },
     /// About the z axis, unbounded.
-    InfiniteCylinder { radius: f64 },
+    InfiniteCylinder {
+        radius: f64,
+    },
     /// About the z axis, radius `base_radius` at z = 0 and `top_radius` at z = `height`; at most one is zero.
-    Cone { base_radius: f64, top_radius: f64, height: f64 },
+    Cone {
+        base_radius: f64,
+        top_radius: f64,
+        height: f64,
+    },
     /// About the z axis, centre circle of radius `major` in the plane z = 0, tube radius `minor`
     /// (ring, horn and spindle; a spindle torus is the union, its lens included).
-    Torus { major: f64, minor: f64 },
+    Torus {
+        major: f64,
+        minor: f64,
+    },
     /// z <= 0.
     HalfSpace,
+    Paraboloid(Paraboloid),
+    Hyperboloid(Hyperboloid),
 }
 
 /// A point on a shape's surface with its frame, in object space.
@@ -50,7 +69,26 @@ impl Shape {
             }
             Shape::Torus { major, minor } => positive(major) && positive(minor),
             Shape::HalfSpace => true,
+            Shape::Paraboloid(ref paraboloid) => paraboloid.is_valid(),
+            Shape::Hyperboloid(ref hyperboloid) => hyperboloid.is_valid(),
         }
+    }
+
+    /// Every number that the shape is made of, in a fixed order: equal shapes of one kind have equal numbers.
+    pub fn for_each_size(&self, visit: &mut dyn FnMut(f64)) {
+        let sizes: &[f64] = match self {
+            Shape::Sphere { radius } | Shape::InfiniteCylinder { radius } => &[*radius],
+            Shape::Box { min, max } => &[min.x, min.y, min.z, max.x, max.y, max.z],
+            Shape::Cylinder { radius, height } => &[*radius, *height],
+            Shape::Cone { base_radius, top_radius, height } => &[*base_radius, *top_radius, *height],
+            Shape::Torus { major, minor } => &[*major, *minor],
+            Shape::HalfSpace => &[],
+            Shape::Paraboloid(Paraboloid { radius, height }) => &[*radius, *height],
+            Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets }) => {
+                &[*radius, *slope, *half_height, f64::from(u8::from(*two_sheets))]
+            }
+        };
+        sizes.iter().for_each(|&x| visit(x));
     }
 
     /// Membership in the closed solid.
@@ -66,6 +104,8 @@ impl Shape {
             }
             Shape::Torus { major, minor } => (ring() - major).hypot(p.z) <= minor,
             Shape::HalfSpace => p.z <= 0.0,
+            Shape::Paraboloid(ref paraboloid) => paraboloid.contains(p),
+            Shape::Hyperboloid(ref hyperboloid) => hyperboloid.contains(p),
         }
     }
 
@@ -80,6 +120,8 @@ impl Shape {
             Shape::Cone { base_radius, top_radius, height } => upright(base_radius.max(top_radius), 0.0, height),
             Shape::Torus { major, minor } => upright(major + minor, -minor, minor),
             Shape::HalfSpace => Aabb::new(DVec3::NEG_INFINITY, DVec3::new(inf, inf, 0.0)),
+            Shape::Paraboloid(ref paraboloid) => paraboloid.bounds(),
+            Shape::Hyperboloid(ref hyperboloid) => hyperboloid.bounds(),
         }
     }
 
@@ -90,7 +132,7 @@ impl Shape {
 
     /// The shape is convex.
     pub fn is_convex(&self) -> bool {
-        !matches!(self, Shape::Torus { .. })
+        !matches!(self, Shape::Torus { .. } | Shape::Hyperboloid(_))
     }
 
     /// Length that rounding errors of its own scale with.
@@ -102,6 +144,8 @@ impl Shape {
             Shape::Cone { base_radius, top_radius, height } => base_radius.max(top_radius).max(height),
             Shape::Torus { major, minor } => major + minor,
             Shape::HalfSpace => 0.0,
+            Shape::Paraboloid(ref paraboloid) => paraboloid.radius.max(paraboloid.height),
+            Shape::Hyperboloid(ref hyperboloid) => hyperboloid.magnitude(),
         }
     }
 
@@ -121,6 +165,8 @@ impl Shape {
             }
             Shape::Torus { major, minor } => unit(dir, |d| torus::crossings(major, minor, origin, d)),
             Shape::HalfSpace => half_space::crossings(origin, dir),
+            Shape::Paraboloid(ref paraboloid) => unit(dir, |d| paraboloid.crossings(origin, d)),
+            Shape::Hyperboloid(ref hyperboloid) => unit(dir, |d| hyperboloid.crossings(origin, d)),
         }
     }
 
@@ -134,6 +180,8 @@ impl Shape {
             Shape::Cone { base_radius, top_radius, height } => cone::surface(base_radius, top_radius, height, p, face),
             Shape::Torus { major, minor } => torus::surface(major, minor, p),
             Shape::HalfSpace => half_space::surface(p),
+            Shape::Paraboloid(ref paraboloid) => paraboloid.surface(p, face),
+            Shape::Hyperboloid(ref hyperboloid) => hyperboloid.surface(p, face),
         }
     }
 }

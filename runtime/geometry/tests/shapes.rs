@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use arsc_geometry::{Aabb, Classification, DAffine3, DMat3, DVec3, Placed, Shape};
+use arsc_geometry::{Aabb, Classification, DAffine3, DMat3, DVec3, Hyperboloid, Paraboloid, Placed, Shape};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -23,7 +23,17 @@ fn shapes() -> Vec<Shape> {
         Shape::Torus { major: 0.4, minor: 0.7 },
         Shape::Torus { major: 0.01, minor: 0.7 },
         Shape::HalfSpace,
+        Shape::Paraboloid(Paraboloid { radius: 0.7, height: 1.2 }),
+        Shape::Paraboloid(Paraboloid { radius: 1.5, height: 0.02 }),
+        hyperboloid(0.3, 0.8, 0.7, false),
+        hyperboloid(0.01, 1.5, 0.5, false),
+        hyperboloid(0.3, 0.9, 0.8, true),
+        hyperboloid(0.02, 0.4, 0.9, true),
     ]
+}
+
+fn hyperboloid(radius: f64, slope: f64, half_height: f64, two_sheets: bool) -> Shape {
+    Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets })
 }
 
 fn random_vector(rng: &mut Pcg64) -> DVec3 {
@@ -63,7 +73,7 @@ fn random_line(placed: &Placed, rng: &mut Pcg64) -> (DVec3, DVec3) {
     (map.transform_point3(origin), map.transform_vector3(dir).normalize())
 }
 
-/// 14 shapes × 12 maps × 300 lines × 24 points; points within 1e-9 of a crossing, relative to the distance, are left out.
+/// Every shape × 12 maps × 300 lines × 24 points; points within 1e-9 of a crossing, relative to the distance, are left out.
 #[test]
 fn crossings_agree_with_membership() {
     let mut rng = Pcg64::seed_from_u64(1);
@@ -240,6 +250,78 @@ fn samples_are_uniform() {
     let side = PI * 2f64.sqrt();
     let expected = side / 3.0 / (side + PI);
     assert!((mean(Shape::Cone { base_radius: 1.0, top_radius: 0.0, height: 1.0 }, |p| p.z) - expected).abs() < 0.01);
+}
+
+/// Isotropic random lines through a sphere cross a surface at points uniform over it, twice its area over the sphere's
+/// times a line (Cauchy and Crofton). So areas, of single faces too, and moments of samples are checked against crossings:
+/// 12 000 lines and samples a shape, 14 statistics, bounds of six standard errors.
+#[test]
+fn areas_and_samples_agree_with_random_lines() {
+    let mut rng = Pcg64::seed_from_u64(7);
+    for shape in shapes().into_iter().filter(Shape::is_bounded) {
+        let placed = Placed::new(shape.clone(), DAffine3::IDENTITY).unwrap();
+        let (center, radius) = (placed.bounds().center(), 0.5 * placed.bounds().extent().length());
+        let statistics = |p: DVec3, face: u32| -> [f64; 14] {
+            let q = (p - center) / radius;
+            let moments = [1.0, q.x, q.y, q.z, q.x * q.x, q.y * q.y, q.z * q.z, q.x * q.y * q.z];
+            std::array::from_fn(|i| if i < 8 { moments[i] } else { f64::from(u8::from(face as usize % 6 == i - 8)) })
+        };
+        let (mut by_lines, mut by_samples) = ([Mean::default(); 14], [Mean::default(); 14]);
+        let n = 12_000;
+        for _ in 0..n {
+            let dir = uniform_direction(&mut rng);
+            let (x, y) = dir.any_orthonormal_pair();
+            let (distance, angle) = (radius * rng.random::<f64>().sqrt(), rng.random_range(0.0..TAU));
+            let origin = center + (x * angle.cos() + y * angle.sin()) * distance;
+            let mut sums = [0.0; 14];
+            for (t, face) in placed.crossings(origin, dir).iter() {
+                let values = statistics(origin + dir * t, face);
+                sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value * TAU * radius * radius);
+            }
+            by_lines.iter_mut().zip(sums).for_each(|(mean, sum)| mean.add(sum));
+            let sample = placed.sample_area([rng.random(), rng.random()]).unwrap();
+            let values = statistics(sample.point.p, sample.face);
+            by_samples.iter_mut().zip(values).for_each(|(mean, value)| mean.add(value / sample.pdf_area));
+        }
+        for (i, (lines, samples)) in by_lines.iter().zip(&by_samples).enumerate() {
+            let error = (lines.variance() + samples.variance()).sqrt();
+            let difference = lines.mean() - samples.mean();
+            let bound = 6.0 * error + 1e-9 * shape.area();
+            assert!(difference.abs() < bound, "{shape:?}, {i}: {} by lines, {}", lines.mean(), samples.mean());
+        }
+        let area = by_lines[0];
+        assert!((area.mean() - shape.area()).abs() < 6.0 * area.variance().sqrt(), "{shape:?}: {}", area.mean());
+    }
+}
+
+fn uniform_direction(rng: &mut Pcg64) -> DVec3 {
+    let (z, angle) = (rng.random_range(-1.0..1.0f64), rng.random_range(0.0..TAU));
+    let ring = (1.0 - z * z).sqrt();
+    DVec3::new(ring * angle.cos(), ring * angle.sin(), z)
+}
+
+/// A mean with its variance.
+#[derive(Clone, Copy, Default)]
+struct Mean {
+    n: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64) {
+        self.n += 1.0;
+        self.sum += value;
+        self.squares += value * value;
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.n
+    }
+
+    fn variance(&self) -> f64 {
+        (self.squares / self.n - self.mean() * self.mean()).max(0.0) / self.n
+    }
 }
 
 #[test]

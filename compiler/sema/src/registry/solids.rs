@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use arsc_diagnostics::codes::sema as codes;
+use arsc_geometry::{Hyperboloid, Paraboloid};
 use arsc_ir::Shape;
 
 use super::{Builtin, Param};
@@ -18,6 +19,7 @@ fn solid(name: &'static str, doc: &'static str) -> Builtin {
 
 pub fn builtins() -> Vec<Builtin> {
     let mut list = round();
+    list.extend(quadrics());
     list.extend(flat());
     list.extend(not_yet());
     list
@@ -99,6 +101,51 @@ fn cone(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
     m.solid(frustum(base, top, height), DAffine3::IDENTITY, site)
 }
 
+fn quadrics() -> Vec<Builtin> {
+    vec![
+        solid(
+            "paraboloid",
+            "A bowl of parabolic section about the z axis: vertex at the origin, closed by a disk at z = `height`.",
+        )
+        .param(Param::new("radius", Float, "radius at the top").float(1.0).positive())
+        .param(Param::new("height", Float, "height").float(1.0).positive())
+        .runs(Solid, |m, args, site| {
+            let shape = Shape::Paraboloid(Paraboloid { radius: args[0].as_float(), height: args[1].as_float() });
+            if !shape.is_valid() {
+                return Err(site.fail(codes::OUT_OF_RANGE, "this paraboloid is too flat or too slender").into());
+            }
+            m.solid(shape, DAffine3::IDENTITY, site)
+        }),
+        solid(
+            "hyperboloid",
+            "A hyperboloid of revolution about the z axis, centred at the origin and cut off at z = ± `height` / 2. One \
+             sheet: x² + y² <= (`slope` z)² + `radius`², a column with a waist. Two sheets: x² + y² <= (`slope` z)² - \
+             `radius`², two bowls with their vertices at z = ± `radius` / `slope`.",
+        )
+        .param(Param::new("radius", Float, "radius of the waist; sets the gap of two sheets").float(1.0).positive())
+        .param(Param::new("height", Float, "height").float(2.0).positive())
+        .param(Param::new("slope", Float, "radius over height of the cone that both forms approach").float(1.0).positive())
+        .param(Param::new("sheets", Type::Int, "1 or 2").int(1).within(1.0, 2.0))
+        .runs(Solid, hyperboloid),
+    ]
+}
+
+fn hyperboloid(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
+    let (radius, half_height, slope) = (args[0].as_float(), 0.5 * args[1].as_float(), args[2].as_float());
+    let two_sheets = args[3].as_int() == 2;
+    let shape = Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets });
+    if shape.is_valid() {
+        return m.solid(shape, DAffine3::IDENTITY, site);
+    }
+    if two_sheets && half_height <= radius / slope {
+        let least = 2.0 * radius / slope;
+        let message = "this hyperboloid is cut off before its sheets begin";
+        let label = format!("must be greater than 2 `radius` / `slope`, here {least}");
+        return Err(site.fail_arg(1, codes::OUT_OF_RANGE, message, label));
+    }
+    Err(site.fail(codes::OUT_OF_RANGE, "the sizes of this hyperboloid lie too far apart").into())
+}
+
 fn flat() -> Vec<Builtin> {
     vec![
         solid("box", "A box with faces parallel to the axes: by `size`, or by two opposite corners `min` and `max`.")
@@ -166,16 +213,6 @@ fn block(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
 fn not_yet() -> Vec<Builtin> {
     let size = |name, doc| Param::new(name, Float, doc).positive();
     vec![
-        solid("paraboloid", "A paraboloid of revolution about the z axis, closed by a disk at z = `height`.")
-            .param(size("radius", "radius at the top").float(1.0))
-            .param(size("height", "height").float(1.0))
-            .later(Solid, "the paraboloid"),
-        solid("hyperboloid", "A hyperboloid of revolution about the z axis, of one or two sheets.")
-            .param(size("radius", "radius of the waist").float(1.0))
-            .param(size("height", "height").float(1.0))
-            .param(size("slope", "slope of the asymptotes").float(1.0))
-            .param(Param::new("sheets", Type::Int, "1 or 2").int(1).within(1.0, 2.0))
-            .later(Solid, "the hyperboloid"),
         solid("superquadric", "A superellipsoid.")
             .param(Param::new("radii", Vec3, "half axes").vec3([1.0; 3]).positive())
             .param(size("e1", "exponent from pole to pole").float(1.0))

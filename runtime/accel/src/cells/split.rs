@@ -18,7 +18,7 @@ const EDGES: usize = 4;
 pub fn weight(shape: &Shape) -> f64 {
     match shape {
         Shape::Torus { .. } => 12.0,
-        Shape::Cone { .. } | Shape::Cylinder { .. } => 2.0,
+        Shape::Cone { .. } | Shape::Cylinder { .. } | Shape::Paraboloid(_) | Shape::Hyperboloid(_) => 2.0,
         _ => 1.0,
     }
 }
