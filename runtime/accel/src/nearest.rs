@@ -64,10 +64,12 @@ impl Nearest {
     }
 
     /// Beyond this nothing matters any more.
+    #[inline]
     pub fn limit(&self) -> f64 {
         self.best.map_or(self.t_max, |best| best.t + best.tolerance)
     }
 
+    #[inline]
     pub fn offer(&mut self, candidate: Candidate) {
         if !(candidate.t > 0.0 && candidate.t < self.t_max) {
             return;

@@ -58,6 +58,7 @@ impl View {
     }
 
     /// `ray` is in the world, its `dir` unit.
+    #[inline]
     pub fn world(ray: &Ray) -> View {
         View {
             origin: ray.origin,
@@ -74,6 +75,7 @@ impl View {
     }
 
     /// The single precision segment through what `extent` holds, from close before it; `None` when it is missed.
+    #[inline]
     pub fn segment(&mut self, extent: &Extent, limit: f64) -> Option<Segment> {
         let (low, high) = slab(&extent.bounds, self.origin, self.inverse_dir);
         let high = high.min(limit * self.scale);
@@ -94,6 +96,7 @@ impl View {
     }
 
     /// Embree's distance, rounded up, for the ray's parameter `t`.
+    #[inline]
     fn far(&self, t: f64) -> f32 {
         let distance = t * self.scale - self.shift + self.slack;
         ((distance * (1.0 + SINGLE_PAD)) as f32).next_up()
@@ -251,6 +254,7 @@ impl Query {
     }
 
     /// Takes note of a candidate; false when nothing behind it along the same primitive can matter.
+    #[inline]
     pub fn offer(&mut self, candidate: Candidate) -> bool {
         let within = candidate.t > 0.0 && candidate.t < self.ray.t_max;
         match self.mode {
@@ -272,11 +276,13 @@ impl Query {
     }
 
     /// Beyond this parameter nothing matters any more.
+    #[inline]
     pub fn limit(&self) -> f64 {
         self.nearest.limit()
     }
 
     /// What Embree is told after a primitive; `before` is the limit from before it.
+    #[inline]
     pub fn step(&self, before: f64) -> Step {
         let now = self.limit();
         if now < before { Step::Hit(self.view.far(now)) } else { Step::Miss }

@@ -168,44 +168,40 @@ impl Scene {
 
     /// The nearest surface point with `0 < t < t_max`.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        let query = self.trace(Mode::Nearest, ray, None)?;
-        let hit = query.nearest.best.map(|best| self.complete(&best, query.nearest.tie, ray));
-        recycle(query);
-        hit
+        self.trace(Mode::Nearest, ray, None, |query| {
+            let best = query.nearest.best.as_ref()?;
+            Some(self.complete(best, query.nearest.tie, ray))
+        })?
     }
 
     /// Whether anything is met with `0 < t < t_max`.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        let Some(query) = self.trace(Mode::Occluded, ray, None) else { return false };
-        let blocked = query.blocked;
-        recycle(query);
-        blocked
+        self.trace(Mode::Occluded, ray, None, |query| query.blocked).unwrap_or(false)
     }
 
     /// Primitives (cells, whole solids, surfaces) that [`Scene::intersect`] tests for this ray.
     pub fn count_tests(&self, ray: &Ray) -> u32 {
-        let Some(query) = self.trace(Mode::Nearest, ray, None) else { return 0 };
-        let tests = query.tests;
-        recycle(query);
-        tests
+        self.trace(Mode::Nearest, ray, None, |query| query.tests).unwrap_or(0)
     }
 
     /// All stretches of the ray inside solids, sorted by solid, then by `t`.
     pub fn intervals(&self, ray: &Ray) -> Vec<Interval> {
-        let mut found = Vec::new();
         // To infinity, so that a bounded solid is known to be left again.
-        let Some(mut query) = self.trace(Mode::Collect, &Ray { t_max: f64::INFINITY, ..*ray }, None) else {
-            return found;
-        };
+        let endless = Ray { t_max: f64::INFINITY, ..*ray };
+        self.trace(Mode::Collect, &endless, None, |query| self.paired(&mut query.scratch.collected, ray))
+            .unwrap_or_default()
+    }
+
+    /// The stretches between transitions of all solids.
+    fn paired(&self, transitions: &mut [Candidate], ray: &Ray) -> Vec<Interval> {
+        let mut found = Vec::new();
         let solid_of = |candidate: &Candidate| match candidate.target {
             Target::Solid { solid, .. } => solid,
             _ => u32::MAX,
         };
-        query
-            .scratch
-            .collected
+        transitions
             .sort_unstable_by(|a, b| solid_of(a).cmp(&solid_of(b)).then(a.t.total_cmp(&b.t)).then(a.part.cmp(&b.part)));
-        let mut rest = &query.scratch.collected[..];
+        let mut rest = &transitions[..];
         for (solid, member) in (0..).zip(&self.members) {
             let (own, others) = rest.split_at(rest.partition_point(|candidate| solid_of(candidate) <= solid));
             if !own.is_empty() || !member.model.bounds.is_finite() {
@@ -213,7 +209,6 @@ impl Scene {
             }
             rest = others;
         }
-        recycle(query);
         found
     }
 
@@ -245,16 +240,18 @@ impl Scene {
         }
     }
 
-    /// `None` for rays that cannot be traced. The query goes to [`recycle`] afterwards.
-    fn trace(&self, mode: Mode, ray: &Ray, only: Option<u32>) -> Option<Query> {
+    /// What `answer` makes of the traced query; `None` for rays that cannot be traced.
+    #[inline]
+    fn trace<R>(&self, mode: Mode, ray: &Ray, only: Option<u32>, answer: impl FnOnce(&mut Query) -> R) -> Option<R> {
         if !is_traceable(ray) {
             return None;
         }
-        let scratch = SCRATCH.take().unwrap_or_default();
-        let mut query = Query::new(mode, ray, scratch);
+        let mut query = Query::new(mode, ray, SCRATCH.take().unwrap_or_default());
         query.only = only;
         World::trace(&self.world, &mut query);
-        Some(query)
+        let result = answer(&mut query);
+        SCRATCH.set(Some(query.scratch));
+        Some(result)
     }
 
     /// A point uniform over the part's object space area, if it is on the boundary of the part's solid and its own there;
@@ -284,11 +281,10 @@ impl Scene {
             member.frame.as_ref().map_or(1.0, |frame| frame.world_from_object.matrix3.determinant().abs().cbrt());
         let reach = 4.0 * (member.model.tolerance * stretch).max(4.0 * point.p_error);
         let ray = Ray { origin: point.p + point.n * reach, dir: -point.n, t_max: 2.0 * reach };
-        let query = self.trace(Mode::Nearest, &ray, Some(solid))?;
-        let nearest = query.nearest;
-        recycle(query);
-        let best = nearest.best.filter(|best| best.part == part.0)?;
-        Some(self.complete(&best, nearest.tie, &ray))
+        self.trace(Mode::Nearest, &ray, Some(solid), |query| {
+            let best = query.nearest.best.filter(|best| best.part == part.0)?;
+            Some(self.complete(&best, query.nearest.tie, &ray))
+        })?
     }
 
     /// Density with which [`Scene::sample_part`] gives the point of this hit, per unit of world area; zero for
@@ -461,9 +457,4 @@ fn is_traceable(ray: &Ray) -> bool {
 
 fn area_sample(point: &SurfacePoint, ng: DVec3, pdf_area: f64) -> AreaSample {
     AreaSample { p: point.p, p_error: point.p_error, ng, uv: point.uv, pdf_area }
-}
-
-/// Gives the query's buffers to the next ray of this thread.
-fn recycle(query: Query) {
-    SCRATCH.set(Some(query.scratch));
 }

@@ -16,11 +16,13 @@ pub struct Segment {
 }
 
 impl Segment {
+    #[inline]
     fn is_traceable(&self) -> bool {
         let finite = |v: &[f32; 3]| v.iter().all(|x| x.is_finite());
         finite(&self.origin) && finite(&self.dir) && self.t_near >= 0.0 && self.t_far >= self.t_near
     }
 
+    #[inline]
     fn ray(&self) -> rtc::RTCRay {
         rtc::RTCRay {
             org_x: self.origin[0],
@@ -52,6 +54,7 @@ pub struct NativeHit {
 
 impl<C: Callbacks> Scene<C> {
     /// The nearest hit. Rays that are not finite, or have `t_far < t_near`, meet nothing.
+    #[inline]
     pub fn intersect(&self, segment: &Segment, query: &mut C::Query) -> Option<NativeHit> {
         if !segment.is_traceable() {
             return None;
@@ -79,6 +82,7 @@ impl<C: Callbacks> Scene<C> {
     }
 
     /// Whether anything blocks the segment. Rays that are not finite are not blocked.
+    #[inline]
     pub fn occluded(&self, segment: &Segment, query: &mut C::Query) -> bool {
         if !segment.is_traceable() {
             return false;
