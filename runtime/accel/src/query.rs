@@ -216,6 +216,11 @@ impl Scratch {
         &cache.roots[i]
     }
 
+    /// Whether [`Scratch::roots`] has those of leaf `key`.
+    pub fn has_roots(&self, key: u64) -> bool {
+        self.cache.keys[..self.cache.len.min(RootCache::SIZE)].contains(&key)
+    }
+
     /// Keeps crossings until the next are kept.
     pub fn keep(&mut self, crossings: Crossings) -> &Crossings {
         self.kept = crossings;

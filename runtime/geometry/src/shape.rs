@@ -109,6 +109,16 @@ impl Shape {
         }
     }
 
+    /// Signed distance to the surface, negative inside, or less in absolute value, for shapes whose crossings cost more than
+    /// that. It changes by at most the distance between two points.
+    #[inline]
+    pub fn distance(&self, p: DVec3) -> Option<f64> {
+        match *self {
+            Shape::Torus { major, minor } => Some(torus::distance(major, minor, p)),
+            _ => None,
+        }
+    }
+
     /// Tight box in object space; infinite where the shape is.
     pub fn bounds(&self) -> Aabb {
         let inf = f64::INFINITY;

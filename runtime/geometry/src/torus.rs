@@ -228,6 +228,13 @@ fn polished(major: f64, minor: f64, o: DVec3, dir: DVec3, mut t: f64) -> f64 {
     t
 }
 
+/// Signed distance to the surface, negative inside, where that is no more than a bound (within a spindle's lens).
+#[inline]
+pub(crate) fn distance(major: f64, minor: f64, p: DVec3) -> f64 {
+    let out = p.truncate().length() - major;
+    (out * out + p.z * p.z).sqrt() - minor
+}
+
 /// u is the azimuth, v the angle around the tube from the outer equator, both over [0, 1].
 pub(crate) fn surface(major: f64, minor: f64, p: DVec3) -> LocalPoint {
     let azimuth = p.y.atan2(p.x);

@@ -6,6 +6,7 @@
 //! their box dilated by one tolerance, so neighbours overlap and a cluster of coincident crossings is never cut in both.
 
 mod build;
+mod deferred;
 mod dominance;
 mod query;
 mod split;

@@ -4,6 +4,7 @@ use arsc_geometry::{Crossings, Span};
 use glam::DVec3;
 use smallvec::SmallVec;
 
+use crate::cells::deferred::{Deferral, constant_state};
 use crate::cells::{Cell, CellLeaf, CellSet, Code, Kernel};
 use crate::coincidence::{Event, Plain, States, settle};
 use crate::counted::Counted;
@@ -45,12 +46,22 @@ pub struct Window {
 
 impl Window {
     /// Crossings up to here are the past: those of clusters that began before the cell are still looked at.
-    fn from(&self) -> f64 {
+    pub fn from(&self) -> f64 {
         (self.low - self.tolerance).max(self.start)
+    }
+
+    /// Crossings from here on are the future: those of clusters that begin in the cell are still looked at.
+    pub fn to(&self) -> f64 {
+        self.high + self.tolerance
     }
 }
 
 impl Line<'_> {
+    /// The leaf is costly, and its crossings are not known yet.
+    fn is_unsolved(&self, leaf: &CellLeaf, scratch: &Scratch) -> bool {
+        matches!(leaf.kernel, Kernel::Costly) && !scratch.has_roots(self.key | u64::from(leaf.leaf))
+    }
+
     fn crossings(&self, leaf: &CellLeaf) -> Crossings {
         self.solid.leaves[leaf.leaf as usize].crossings(self.origin, self.dir)
     }
@@ -75,7 +86,7 @@ enum Met<'s> {
 }
 
 impl CellSet {
-    /// Calls `visit` for every transition in the window, in order, until it returns false.
+    /// Calls `visit` for every transition in the window (`all`) or for the first, in order.
     ///
     /// Inside or outside at the window's beginning follows from the crossings before it, so a ray may start anywhere. A
     /// cluster that begins just before `low` belongs to the cell before; it is passed over as a whole.
@@ -86,16 +97,21 @@ impl CellSet {
         line: &Line,
         window: &Window,
         scratch: &mut Scratch,
-        visit: impl FnMut(Transition) -> bool,
+        all: bool,
+        mut visit: impl FnMut(Transition),
     ) {
         let leaves = self.leaves(cell);
+        let visit = |transition| {
+            visit(transition);
+            all
+        };
         match (leaves, self.code(cell)) {
             ([leaf], Code::Table(table)) => single(leaf, table & 1 == 1, line, window, scratch, visit),
-            (_, Code::Table(table)) => several(leaves, table, line, window, scratch, visit),
+            (_, Code::Table(table)) => several(leaves, table, line, window, scratch, all, visit),
             (_, Code::Tokens(tokens)) => {
                 let mut states: SmallVec<[bool; 64]> = SmallVec::with_capacity(leaves.len());
                 let mut events = Events::new();
-                gather(leaves, line, window, scratch, &mut events, |_, state| states.push(state));
+                gather(leaves, 0, line, window, scratch, &mut events, |_, state| states.push(state));
                 if events.len() < MANY_EVENTS {
                     let eval = |states: &[bool]| eval(tokens, |slot| states[slot as usize]);
                     walk(leaves, &events, window, Plain { states: &mut states, eval }, visit);
@@ -107,10 +123,12 @@ impl CellSet {
     }
 }
 
-/// Collects the crossings in the window, sorted, and tells each leaf's state before them.
+/// Collects the crossings in the window, sorted, and tells each leaf's state before them. Leaves with a bit in `deferred` are
+/// left out.
 #[inline]
 fn gather(
     leaves: &[CellLeaf],
+    deferred: u32,
     line: &Line,
     window: &Window,
     scratch: &mut Scratch,
@@ -118,8 +136,11 @@ fn gather(
     mut state: impl FnMut(u32, bool),
 ) {
     let from = window.from();
-    let to = window.high + window.tolerance;
+    let to = window.to();
     for (slot, leaf) in (0..).zip(leaves) {
+        if slot < 32 && deferred >> slot & 1 == 1 {
+            continue;
+        }
         let mut push = |t: f64, face: u32| {
             if t > from && t <= to {
                 events.push(Event { t, slot, face });
@@ -187,11 +208,32 @@ fn several(
     line: &Line,
     window: &Window,
     scratch: &mut Scratch,
+    all: bool,
     visit: impl FnMut(Transition) -> bool,
 ) {
     let mut events = Events::new();
     let mut states = 0;
-    gather(leaves, line, window, scratch, &mut events, |slot, state| states |= u32::from(state) << slot);
+    if !all && leaves.iter().any(|leaf| line.is_unsolved(leaf, scratch)) {
+        let (mut deferred, mut left_out) = (0, 0);
+        for (slot, leaf) in leaves.iter().enumerate().filter(|(_, leaf)| line.is_unsolved(leaf, scratch)) {
+            match constant_state(leaf, line, window) {
+                Some(state) => states |= u32::from(state) << slot,
+                None => deferred |= 1 << slot,
+            }
+            left_out |= 1 << slot;
+        }
+        gather(leaves, left_out, line, window, scratch, &mut events, |slot, state| states |= u32::from(state) << slot);
+        if deferred == 0 {
+            return walk(leaves, &events, window, Bits { states, table }, visit);
+        }
+        if let Some(first) = (Deferral { table, states, deferred, leaves, line, window }).first(&events) {
+            first.map(visit);
+            return;
+        }
+        events.clear();
+        states = 0;
+    }
+    gather(leaves, 0, line, window, scratch, &mut events, |slot, state| states |= u32::from(state) << slot);
     walk(leaves, &events, window, Bits { states, table }, visit);
 }
 
@@ -249,6 +291,9 @@ fn single(
             Transition { t, leaf: leaf.leaf, face, entering: inside != negated, flipped: negated, shared: false };
         t <= window.low || visit(transition)
     };
+    if line.is_unsolved(leaf, scratch) && constant_state(leaf, line, window).is_some() {
+        return;
+    }
     let crossings = match line.meet(leaf, scratch) {
         Met::Span(None) => return,
         Met::Span(Some(span)) => {

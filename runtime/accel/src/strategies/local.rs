@@ -85,20 +85,14 @@ impl Local {
         };
         if query.mode == Mode::Collect {
             let mut found = vec![];
-            set.transitions(cell, &line, &window, &mut query.scratch, |transition| {
-                found.push(transition);
-                true
-            });
+            set.transitions(cell, &line, &window, &mut query.scratch, true, |transition| found.push(transition));
             for transition in found {
                 query.offer(solids.candidate(cell.solid, transition, ray, &view));
             }
             return;
         }
         let mut found = None;
-        set.transitions(cell, &line, &window, &mut query.scratch, |transition| {
-            found = Some(transition);
-            false
-        });
+        set.transitions(cell, &line, &window, &mut query.scratch, false, |transition| found = Some(transition));
         if let Some(transition) = found {
             query.offer(solids.candidate(cell.solid, transition, ray, &view));
         }
