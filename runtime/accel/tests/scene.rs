@@ -53,6 +53,30 @@ fn sphere_is_hit_from_outside_and_inside() {
     }
 }
 
+/// Operands that the tree does not use, and trees that are nothing or everything.
+#[test]
+fn constant_trees_meet_nothing() {
+    let leaves = vec![sphere(DVec3::ZERO, 1.0, 0), sphere(DVec3::X, 1.0, 1)];
+    let everything = || Csg::Intersection(vec![]);
+    let trees = [
+        Csg::Union(vec![]),
+        everything(),
+        minus(Csg::Union(vec![]), Csg::Leaf(0)),
+        Csg::Union(vec![everything(), Csg::Leaf(1)]),
+    ];
+    let ray = Ray::new(DVec3::new(-3.0, 0.0, 0.0), DVec3::X);
+    for tree in trees {
+        for scene in scenes(solid(tree.clone(), leaves.clone())) {
+            assert!(scene.intersect(&ray).is_none() && !scene.occluded(&ray), "{tree:?}");
+        }
+    }
+    for scene in scenes(solid(minus(everything(), Csg::Leaf(0)), leaves)) {
+        let hit = scene.intersect(&ray).expect("the void");
+        assert!((hit.t - 2.0).abs() < 1e-14 && close(hit.ng, DVec3::X), "{hit:?}");
+        assert_eq!(scene.intervals(&ray).len(), 2);
+    }
+}
+
 /// No cut separates the shells, so one cell holds hundreds of leaves, all of which a ray from within crosses.
 #[test]
 fn many_crossings_in_one_cell() {

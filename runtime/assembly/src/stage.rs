@@ -136,5 +136,6 @@ pub fn accel_strategy(strategy: arsc_ir::Strategy) -> Strategy {
         arsc_ir::Strategy::Tree => Strategy::Tree,
         arsc_ir::Strategy::Kd => Strategy::Kd,
         arsc_ir::Strategy::Hybrid => Strategy::Hybrid,
+        arsc_ir::Strategy::Incremental => Strategy::Incremental,
     }
 }

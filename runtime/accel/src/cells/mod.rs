@@ -64,7 +64,7 @@ pub enum Kernel {
 }
 
 impl Kernel {
-    fn new(placed: &Placed) -> Kernel {
+    pub fn new(placed: &Placed) -> Kernel {
         match (placed.direct(), placed.shape()) {
             (Some(&Direct::Ball { center, radius }), _) => Kernel::Ball { center, radius },
             (Some(&Direct::Box { min, max }), _) => Kernel::Box { min, max },

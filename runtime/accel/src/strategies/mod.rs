@@ -11,12 +11,14 @@
 //! | `tree` | solid | boxes at the nodes of the operator tree |
 //! | `kd` | solid | KD tree over the solid's leaves; whole tree |
 //! | `hybrid` | solid | `kd` with mesh operands, else `tree` |
+//! | `incremental` | solid | as `kd`, but only what changes is evaluated |
 //!
 //! A leaf's box is cut to that of its solid, where alone it matters; what is not finite even so is met by every ray. Boxes
 //! are grown by [`PAD`] tolerances, so that crossings which coincide with one within are found together.
 
 mod collect;
 mod collected;
+mod gather;
 mod hybrid;
 mod kd;
 mod kd_tree;
@@ -76,6 +78,7 @@ impl Tracer {
             Strategy::Collect => Tracer::Collect(Collect::build(solids)),
             Strategy::Tree => Tracer::PerSolid(PerSolid::build(solids, Structure::tree)),
             Strategy::Kd => Tracer::PerSolid(PerSolid::build(solids, Structure::kd)),
+            Strategy::Incremental => Tracer::PerSolid(PerSolid::build(solids, Structure::incremental)),
             Strategy::Hybrid => Tracer::PerSolid(PerSolid::build(solids, hybrid::structure)),
             Strategy::Oracle => Tracer::PerSolid(PerSolid::build(solids, |_| Structure::Oracle)),
         }

@@ -7,9 +7,10 @@ use arsc_geometry::Aabb;
 use crate::level::Solids;
 use crate::query::{Extent, Query};
 use crate::solid::{SolidModel, SolidRay};
+use crate::strategies::gather::{Gathered, SolidLine};
 use crate::strategies::kd::SolidKd;
 use crate::strategies::kd_tree::Mailbox;
-use crate::strategies::operators::{Gathered, Operators, Values};
+use crate::strategies::operators::{Evaluation, Operators, Values};
 use crate::strategies::tree::{BoxTree, Open};
 use crate::strategies::{PAD, SolidTracer, oracle};
 
@@ -45,11 +46,16 @@ pub enum Structure {
 
 impl Structure {
     pub fn tree(solid: &SolidModel) -> Structure {
-        Structure::Tree(BoxTree::new(solid, PAD * solid.tolerance), Operators::new(solid))
+        // Nodes are left out by their boxes: what is looked at is not the whole tree.
+        Structure::Tree(BoxTree::new(solid, PAD * solid.tolerance), Operators::new(solid, Evaluation::Kept))
     }
 
     pub fn kd(solid: &SolidModel) -> Structure {
-        Structure::Kd(SolidKd::new(solid), Operators::new(solid))
+        Structure::Kd(SolidKd::new(solid), Operators::new(solid, Evaluation::Whole))
+    }
+
+    pub fn incremental(solid: &SolidModel) -> Structure {
+        Structure::Kd(SolidKd::new(solid), Operators::new(solid, Evaluation::Kept))
     }
 
     fn bytes(&self) -> usize {
@@ -103,11 +109,11 @@ impl PerSolid {
                     query.offer(solids.candidate(solid, transition, &ray, &view))
                 });
             }
-            Structure::Tree(tree, operators) => evaluate(solids, solid, operators, &ray, query, |scratch| {
-                tree.gather(model, &ray, &mut scratch.open, &mut scratch.mailbox, &mut scratch.gathered);
+            Structure::Tree(tree, operators) => evaluate(solids, solid, operators, &ray, query, |line, scratch| {
+                tree.gather(line, &mut scratch.open, &mut scratch.mailbox, &mut scratch.gathered);
             }),
-            Structure::Kd(kd, operators) => evaluate(solids, solid, operators, &ray, query, |scratch| {
-                kd.gather(model, &ray, &mut scratch.mailbox, &mut scratch.gathered);
+            Structure::Kd(kd, operators) => evaluate(solids, solid, operators, &ray, query, |line, scratch| {
+                kd.gather(line, &mut scratch.mailbox, &mut scratch.gathered);
             }),
         }
     }
@@ -120,14 +126,14 @@ pub fn evaluate(
     operators: &Operators,
     ray: &SolidRay,
     query: &mut Query,
-    gather: impl FnOnce(&mut WholeScratch),
+    gather: impl FnOnce(&SolidLine, &mut WholeScratch),
 ) {
     // Offering needs the query.
     let mut scratch = std::mem::take(&mut query.scratch.whole);
-    gather(&mut scratch);
-    let view = query.view;
+    let (view, model) = (query.view, &*solids.models[solid as usize]);
+    gather(&SolidLine::new(model, &operators.kernels, *ray, &view), &mut scratch);
     let WholeScratch { gathered, values, .. } = &mut scratch;
-    operators.transitions(&solids.models[solid as usize], gathered, values, |transition| {
+    operators.transitions(model, gathered, values, |transition| {
         query.offer(solids.candidate(solid, transition, ray, &view))
     });
     query.scratch.whole = scratch;
