@@ -248,7 +248,7 @@ struct Tally {
 fn check(seed: u64) -> Tally {
     let (case, mut rng) = case(seed);
     let geometry = SceneGeometry { solids: vec![case.solid.clone()], ..SceneGeometry::default() };
-    let build = |strategy| Scene::build(geometry.clone(), BuildOptions { strategy }).unwrap();
+    let build = |strategy| Scene::build(geometry.clone(), BuildOptions::from(strategy)).unwrap();
     let oracle = build(Strategy::Oracle);
     let scenes = Strategy::ALL.map(|strategy| (strategy, build(strategy)));
     let place = |leaf: &CsgLeaf| Placed::new(leaf.shape.clone(), leaf.world_from_object).unwrap();

@@ -27,7 +27,7 @@ fn minus(a: Csg, b: Csg) -> Csg {
 
 /// The scene under every strategy.
 fn scenes(geometry: SceneGeometry) -> Vec<Scene> {
-    let build = |strategy: &Strategy| Scene::build(geometry.clone(), BuildOptions { strategy: *strategy }).unwrap();
+    let build = |strategy: &Strategy| Scene::build(geometry.clone(), BuildOptions::from(*strategy)).unwrap();
     Strategy::ALL.iter().chain(&[Strategy::Oracle]).map(build).collect()
 }
 

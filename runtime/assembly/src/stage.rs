@@ -103,7 +103,7 @@ impl<'a> Stage<'a> {
 
 /// The scene of `geometry` for tracing.
 pub fn build(geometry: SceneGeometry, strategy: Strategy) -> Result<Scene, AssemblyError> {
-    Scene::build(geometry, BuildOptions { strategy }).map_err(|source| AssemblyError::Accel(Box::new(source)))
+    Scene::build(geometry, BuildOptions::from(strategy)).map_err(|source| AssemblyError::Accel(Box::new(source)))
 }
 
 /// Bounds of a Boolean tree from those of its leaves: not the tightest, never too tight.

@@ -91,6 +91,13 @@ pub enum Code<'a> {
     Tokens(&'a [Token]),
 }
 
+impl Cell {
+    #[inline]
+    pub fn leaf_count(&self) -> u32 {
+        self.leaf_count
+    }
+}
+
 impl CellSet {
     #[inline]
     fn leaves(&self, cell: &Cell) -> &[CellLeaf] {

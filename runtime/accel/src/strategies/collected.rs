@@ -53,7 +53,6 @@ impl Collected {
                     scratch.gathered.cross(line, same[0].1);
                 }
             });
-            query.tests += group.len() as u32;
         }
         met.truncate(mark);
         query.scratch.whole.met = met;

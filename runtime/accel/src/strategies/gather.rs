@@ -33,6 +33,8 @@ pub struct Gathered {
     pub events: Vec<Event>,
     /// Leaves that the ray starts in.
     pub inside: Vec<u32>,
+    /// How many leaves were crossed.
+    pub tests: u32,
 }
 
 /// A position to go back to.
@@ -45,6 +47,7 @@ pub struct Mark {
 impl Gathered {
     /// Crosses a leaf from the ray's start to its end.
     pub fn cross(&mut self, line: &SolidLine, leaf: u32) {
+        self.tests += 1;
         let (from, to) = (line.ray.start, line.ray.end + line.solid.tolerance);
         let span = match line.kernels[leaf as usize] {
             Kernel::Ball { center, radius } => {
@@ -98,5 +101,6 @@ impl Gathered {
     pub fn clear(&mut self) {
         self.events.clear();
         self.inside.clear();
+        self.tests = 0;
     }
 }

@@ -6,6 +6,7 @@
 
 use arsc_geometry::Aabb;
 
+use crate::Budget;
 use crate::solid::SolidModel;
 use crate::strategies::gather::{Gathered, SolidLine};
 use crate::strategies::kd_tree::{KdTree, Mailbox};
@@ -18,9 +19,9 @@ pub struct SolidKd {
 }
 
 impl SolidKd {
-    pub fn new(solid: &SolidModel) -> SolidKd {
+    pub fn new(solid: &SolidModel, budget: &Budget) -> SolidKd {
         let (boxes, everywhere): (Vec<Aabb>, Vec<u32>) = leaf_boxes(solid);
-        SolidKd { tree: KdTree::build(&boxes), everywhere }
+        SolidKd { tree: KdTree::build(&boxes, budget), everywhere }
     }
 
     pub fn bytes(&self) -> usize {

@@ -31,10 +31,10 @@ mod whole;
 
 use arsc_geometry::Aabb;
 
-use crate::Strategy;
 use crate::level::Solids;
 use crate::query::{Extent, Query};
 use crate::solid::SolidModel;
+use crate::{Budget, Strategy};
 
 use collect::Collect;
 use local::Local;
@@ -71,16 +71,19 @@ pub enum Tracer {
 }
 
 impl Tracer {
-    pub fn build(solids: &Solids, strategy: Strategy) -> Tracer {
+    pub fn build(solids: &Solids, strategy: Strategy, budget: &Budget) -> Tracer {
+        let per_solid = |structure: fn(&SolidModel, &Budget) -> Structure| {
+            Tracer::PerSolid(PerSolid::build(solids, budget, structure))
+        };
         match strategy {
-            Strategy::Local => Tracer::Local(Local::build(solids)),
-            Strategy::Native => Tracer::Native(Native::build(solids)),
+            Strategy::Local => Tracer::Local(Local::build(solids, budget)),
+            Strategy::Native => Tracer::Native(Native::build(solids, budget)),
             Strategy::Collect => Tracer::Collect(Collect::build(solids)),
-            Strategy::Tree => Tracer::PerSolid(PerSolid::build(solids, Structure::tree)),
-            Strategy::Kd => Tracer::PerSolid(PerSolid::build(solids, Structure::kd)),
-            Strategy::Incremental => Tracer::PerSolid(PerSolid::build(solids, Structure::incremental)),
-            Strategy::Hybrid => Tracer::PerSolid(PerSolid::build(solids, hybrid::structure)),
-            Strategy::Oracle => Tracer::PerSolid(PerSolid::build(solids, |_| Structure::Oracle)),
+            Strategy::Tree => per_solid(Structure::tree),
+            Strategy::Kd => per_solid(Structure::kd),
+            Strategy::Incremental => per_solid(Structure::incremental),
+            Strategy::Hybrid => per_solid(hybrid::structure),
+            Strategy::Oracle => per_solid(|_, _| Structure::Oracle),
         }
     }
 

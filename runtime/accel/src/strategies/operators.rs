@@ -133,7 +133,7 @@ impl Operators {
     ) {
         // A constant has no operators.
         if !gathered.events.is_empty() && !self.operators.is_empty() {
-            let Gathered { events, inside } = gathered;
+            let Gathered { events, inside, .. } = gathered;
             events.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.slot.cmp(&b.slot)));
             let mut along = values.begin(self, inside);
             walk(events, solid.tolerance, &mut along, visit);

@@ -4,6 +4,7 @@
 
 use arsc_geometry::Aabb;
 
+use crate::Budget;
 use crate::level::Solids;
 use crate::query::{Extent, Query};
 use crate::solid::{SolidModel, SolidRay};
@@ -45,17 +46,17 @@ pub enum Structure {
 }
 
 impl Structure {
-    pub fn tree(solid: &SolidModel) -> Structure {
+    pub fn tree(solid: &SolidModel, _: &Budget) -> Structure {
         // Nodes are left out by their boxes: what is looked at is not the whole tree.
         Structure::Tree(BoxTree::new(solid, PAD * solid.tolerance), Operators::new(solid, Evaluation::Kept))
     }
 
-    pub fn kd(solid: &SolidModel) -> Structure {
-        Structure::Kd(SolidKd::new(solid), Operators::new(solid, Evaluation::Whole))
+    pub fn kd(solid: &SolidModel, budget: &Budget) -> Structure {
+        Structure::Kd(SolidKd::new(solid, budget), Operators::new(solid, Evaluation::Whole))
     }
 
-    pub fn incremental(solid: &SolidModel) -> Structure {
-        Structure::Kd(SolidKd::new(solid), Operators::new(solid, Evaluation::Kept))
+    pub fn incremental(solid: &SolidModel, budget: &Budget) -> Structure {
+        Structure::Kd(SolidKd::new(solid, budget), Operators::new(solid, Evaluation::Kept))
     }
 
     fn bytes(&self) -> usize {
@@ -84,8 +85,9 @@ pub struct PerSolid {
 }
 
 impl PerSolid {
-    pub fn build(solids: &Solids, structure: impl Fn(&SolidModel) -> Structure) -> PerSolid {
-        let structures = solids.numbered().map(|(_, solid)| structure(solid)).collect();
+    pub fn build(solids: &Solids, budget: &Budget, structure: fn(&SolidModel, &Budget) -> Structure) -> PerSolid {
+        let shares = solids.shares(budget);
+        let structures = solids.models.iter().zip(shares).map(|(solid, share)| structure(solid, &share)).collect();
         let present = solids.numbered().filter(|(_, solid)| !solid.bounds.is_empty());
         let (primitives, open): (Vec<_>, Vec<_>) = present.partition(|(_, solid)| Extent::admits(&solid.bounds));
         let number = |(number, _): (u32, &SolidModel)| number;
@@ -100,11 +102,11 @@ impl PerSolid {
         if solids.is_left_out(solid, query) {
             return;
         }
-        query.tests += 1;
         let (ray, model) = (solids.near_ray(solid, query), &*solids.models[solid as usize]);
         match &self.structures[solid as usize] {
             Structure::Oracle => {
                 let view = query.view;
+                query.tests += model.leaves.len() as u32;
                 oracle::transitions(model, &ray, |transition| {
                     query.offer(solids.candidate(solid, transition, &ray, &view))
                 });
@@ -133,6 +135,7 @@ pub fn evaluate(
     let (view, model) = (query.view, &*solids.models[solid as usize]);
     gather(&SolidLine::new(model, &operators.kernels, *ray, &view), &mut scratch);
     let WholeScratch { gathered, values, .. } = &mut scratch;
+    query.tests += gathered.tests;
     operators.transitions(model, gathered, values, |transition| {
         query.offer(solids.candidate(solid, transition, ray, &view))
     });
