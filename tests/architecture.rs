@@ -14,6 +14,7 @@ const RANKS: &[(&str, u32)] = &[
     ("arsc-ir", 1),
     ("arsc-accel", 1),
     ("arsc-image", 1),
+    ("arsc-mesh", 1),
     ("arsc-sema", 2),
     ("arsc-opt", 2),
     ("arsc-render", 2),

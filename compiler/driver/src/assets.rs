@@ -1,9 +1,11 @@
 //! Data files for sema: embedded tables for modules of `std`, files through the loader for the others.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use arsc_diagnostics::SourceId;
-use arsc_sema::{AssetError, Assets};
+use arsc_sema::{AssetError, Assets, MeshFile};
 
 use crate::{LoadError, Loader, paths, stdlib};
 
@@ -22,6 +24,8 @@ pub(crate) struct LoaderAssets<'a> {
     pub origins: &'a [Origin],
     /// Bytes of one text.
     pub limit: usize,
+    /// Meshes that were asked for, by path.
+    pub meshes: RefCell<HashMap<String, Result<MeshFile, AssetError>>>,
 }
 
 impl LoaderAssets<'_> {
@@ -46,10 +50,14 @@ impl Assets for LoaderAssets<'_> {
         }
     }
 
-    fn probe(&self, from: SourceId, path: &str) -> Result<String, AssetError> {
+    fn mesh(&self, from: SourceId, path: &str) -> Result<MeshFile, AssetError> {
         let path = self.place(from, path).map_err(|_| AssetError::NotFound)?;
-        self.loader.probe(&path).map_err(asset_error)?;
-        Ok(path)
+        let mut known = self.meshes.borrow_mut();
+        let outcome = known.entry(path.clone()).or_insert_with(|| {
+            let mesh = self.loader.mesh(&path).map_err(asset_error)?;
+            Ok(MeshFile { path: path.as_str().into(), mesh })
+        });
+        outcome.clone()
     }
 }
 
@@ -59,6 +67,7 @@ fn asset_error(error: LoadError) -> AssetError {
         LoadError::NotText(_) => AssetError::NotText,
         LoadError::TooLarge { .. } => AssetError::TooLarge,
         LoadError::Forbidden => AssetError::Forbidden,
+        LoadError::Malformed(reason) => AssetError::Malformed(reason),
         LoadError::Other(reason) => AssetError::Other(reason),
     }
 }

@@ -178,7 +178,7 @@ impl Walk<'_> {
                 let message = format!("the module `{name}` lies outside of what may be read");
                 (codes::driver::MODULE_UNREADABLE, message, "not allowed".to_string())
             }
-            LoadError::Other(reason) => {
+            LoadError::Malformed(reason) | LoadError::Other(reason) => {
                 (codes::driver::MODULE_UNREADABLE, format!("the module `{name}` cannot be read"), reason.clone())
             }
         };

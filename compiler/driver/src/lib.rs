@@ -104,7 +104,7 @@ pub fn unreadable(name: &str, error: &LoadError, options: &Options) -> Option<Co
                 .help(format!("byte {offset} is not UTF-8: a scene script is plain UTF-8 text"))
         }
         LoadError::TooLarge { bytes } => graph::too_large(name, *bytes, options.source_bytes),
-        LoadError::NotFound | LoadError::Forbidden | LoadError::Other(_) => return None,
+        LoadError::NotFound | LoadError::Forbidden | LoadError::Malformed(_) | LoadError::Other(_) => return None,
     };
     let mut sources = SourceMap::default();
     sources.add(SourceFile::new(name, ""));
@@ -126,7 +126,12 @@ impl Front {
         let mut ir = None;
         let mut diagnostics = graph.diagnostics;
         if !graph.modules.is_empty() {
-            let assets = assets::LoaderAssets { loader, origins: &graph.origins, limit: options.source_bytes };
+            let assets = assets::LoaderAssets {
+                loader,
+                origins: &graph.origins,
+                limit: options.source_bytes,
+                meshes: Default::default(),
+            };
             let sema =
                 arsc_sema::Options { params, limits: options.limits.clone(), check_only: has_errors(&diagnostics) };
             let analysed = arsc_sema::analyse(&graph.modules, &assets, &sema);

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use arsc_geometry::TriangleMesh;
+
 /// Why a text could not be had.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LoadError {
@@ -13,6 +15,8 @@ pub enum LoadError {
     },
     /// Outside of what may be read.
     Forbidden,
+    /// A mesh that is not what its format demands; the reason.
+    Malformed(String),
     Other(String),
 }
 
@@ -20,8 +24,8 @@ pub enum LoadError {
 pub trait Loader {
     fn load(&self, path: &str) -> Result<Arc<str>, LoadError>;
 
-    /// Whether a data file (a mesh, say) can be read. It is read later, by the renderer.
-    fn probe(&self, path: &str) -> Result<(), LoadError>;
+    /// A triangle mesh. Asked for once for each path.
+    fn mesh(&self, path: &str) -> Result<Arc<TriangleMesh>, LoadError>;
 
     /// The names of the files in a folder, `""` for the root script's, for messages that suggest one. Empty if unknown.
     fn list(&self, _folder: &str) -> Vec<String> {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use arsc_diagnostics::{Severity, codes};
 use arsc_driver::{Compiled, LoadError, Loader, Options};
+use arsc_geometry::TriangleMesh;
 
 /// Files in memory.
 #[derive(Default)]
@@ -19,8 +20,8 @@ impl Loader for Files {
         }
     }
 
-    fn probe(&self, path: &str) -> Result<(), LoadError> {
-        self.load(path).map(drop)
+    fn mesh(&self, _path: &str) -> Result<Arc<TriangleMesh>, LoadError> {
+        Err(LoadError::NotFound)
     }
 
     fn list(&self, folder: &str) -> Vec<String> {

@@ -28,7 +28,7 @@ pub use camera::{Camera, Filter, Projection};
 pub use light::{Environment, Light};
 pub use material::{Attributes, Bsdf, CutRule, Emitter, Material, MaterialId};
 pub use node::{Leaf, Node, NodeId, NodeKind, Precedence, Surface};
-pub use read::{ReadError, read};
+pub use read::{Meshes, ReadError, read, read_with};
 pub use verify::{Violation, verify};
 
 pub use arsc_geometry::{Aabb, Shape};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arsc_diagnostics::Span;
-use arsc_geometry::{DAffine3, DVec3, Shape};
+use arsc_geometry::{DAffine3, DVec3, Shape, TriangleMesh};
 
 use crate::{Attributes, Environment, Light, MaterialId};
 
@@ -70,6 +70,6 @@ pub enum Surface {
     Disk { radius: f64 },
     /// z = 0, normal +z.
     Plane,
-    /// A triangle mesh from a file; the path is resolved against the script's folder.
-    Mesh { path: Arc<str> },
+    /// A triangle mesh from a file; the path is relative to the root script's folder. Its content comes along.
+    Mesh { path: Arc<str>, mesh: Arc<TriangleMesh> },
 }

@@ -59,7 +59,7 @@ impl Display for Ir {
 struct Text<'a, T>(&'a T);
 
 /// A string literal: only `"`, `\` and control characters are escaped.
-struct Quoted<'a>(&'a str);
+pub(crate) struct Quoted<'a>(pub &'a str);
 
 impl Display for Quoted<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -205,7 +205,7 @@ fn open_surface<'a, 'b>(f: &'a mut Formatter<'b>, surface: &Surface) -> Result<C
         }
         Surface::Disk { radius } => Call::new(f, "disk")?.float("radius", *radius),
         Surface::Plane => Call::new(f, "plane"),
-        Surface::Mesh { path } => Call::new(f, "mesh")?.arg("path", Quoted(path)),
+        Surface::Mesh { path, .. } => Call::new(f, "mesh")?.arg("path", Quoted(path)),
     }
 }
 

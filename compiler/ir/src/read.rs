@@ -7,7 +7,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use arsc_diagnostics::{SourceId, Span};
-use arsc_geometry::DVec3;
+use arsc_geometry::{ClosedMesh, DVec3, Shape, TriangleMesh};
 use arsc_spectral::Spectrum;
 
 use crate::args::{Args, float, float_list, floats, index, integer};
@@ -34,12 +34,23 @@ impl fmt::Display for ReadError {
 
 impl std::error::Error for ReadError {}
 
-/// Reads the text form of an IR.
+/// Where the content of a mesh comes from, by its path: the text form names it only.
+pub type Meshes<'a> = &'a dyn Fn(&str) -> Option<Arc<TriangleMesh>>;
+
+/// Reads the text form of an IR without meshes.
 ///
 /// # Errors
 /// The first place where the text does not have the form.
 pub fn read(text: &str) -> Result<Ir, ReadError> {
-    read_statements(text).map_err(|(offset, message)| {
+    read_with(text, &|_| None)
+}
+
+/// Reads the text form of an IR.
+///
+/// # Errors
+/// The first place where the text does not have the form, or names a mesh that there is not.
+pub fn read_with(text: &str, meshes: Meshes<'_>) -> Result<Ir, ReadError> {
+    read_statements(text, meshes).map_err(|(offset, message)| {
         let before = &text[..offset];
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);
         let line = before.matches('\n').count() + 1;
@@ -47,7 +58,7 @@ pub fn read(text: &str) -> Result<Ir, ReadError> {
     })
 }
 
-fn read_statements(text: &str) -> Result<Ir, Fault> {
+fn read_statements(text: &str, meshes: Meshes<'_>) -> Result<Ir, Fault> {
     let mut cursor = Cursor::new(text);
     cursor.expect("ir")?;
     cursor.expect("1")?;
@@ -61,7 +72,7 @@ fn read_statements(text: &str) -> Result<Ir, Fault> {
         actions: Vec::new(),
     };
     while cursor.skip_blank() {
-        statement(&mut cursor, &mut ir)?;
+        statement(&mut cursor, &mut ir, meshes)?;
     }
     if ir.root.0 == u32::MAX {
         return cursor.fault("there is no `root`");
@@ -69,14 +80,14 @@ fn read_statements(text: &str) -> Result<Ir, Fault> {
     Ok(ir)
 }
 
-fn statement(cursor: &mut Cursor, ir: &mut Ir) -> Result<(), Fault> {
+fn statement(cursor: &mut Cursor, ir: &mut Ir, meshes: Meshes<'_>) -> Result<(), Fault> {
     if cursor.peek() == Some('%') {
         let start = cursor.offset;
         if cursor.node()? as usize != ir.nodes.len() {
             return Err((start, format!("expected the next node, `%{}`", ir.nodes.len())));
         }
         cursor.expect("=")?;
-        let kind = node_kind(Args::new(cursor.term()?)?, ir)?;
+        let kind = node_kind(Args::new(cursor.term()?)?, ir, meshes)?;
         let origin = span(cursor)?;
         ir.nodes.push(Node { kind, origin });
         return Ok(());
@@ -208,7 +219,7 @@ fn material(term: Term, ir: &Ir) -> Result<Material, Fault> {
     Ok(Material { bsdf, emitter })
 }
 
-fn node_kind(mut args: Args, ir: &Ir) -> Result<NodeKind, Fault> {
+fn node_kind(mut args: Args, ir: &Ir, meshes: Meshes<'_>) -> Result<NodeKind, Fault> {
     let kind = match args.name {
         "union" => NodeKind::Union(operands(&mut args, ir)?),
         "intersection" => NodeKind::Intersection(operands(&mut args, ir)?),
@@ -235,7 +246,7 @@ fn node_kind(mut args: Args, ir: &Ir) -> Result<NodeKind, Fault> {
             solar_disc: args.boolean("solar_disc")?,
             scale: args.float("scale")?,
         })),
-        _ => NodeKind::Leaf(Box::new(leaf(&mut args, ir)?)),
+        _ => NodeKind::Leaf(Box::new(leaf(&mut args, ir, meshes)?)),
     };
     args.end()?;
     Ok(kind)
@@ -261,19 +272,35 @@ fn attributes(args: &mut Args, ir: &Ir, precedence: Precedence) -> Result<NodeKi
     Ok(NodeKind::Attributes { attributes: Attributes { bsdf, emitter, cut }, precedence, child })
 }
 
-fn leaf(args: &mut Args, ir: &Ir) -> Result<Leaf, Fault> {
-    if let Some(shape) = shape(args)? {
+fn leaf(args: &mut Args, ir: &Ir, meshes: Meshes<'_>) -> Result<Leaf, Fault> {
+    let solid = if args.name == "mesh_solid" { Some(mesh_solid(args, meshes)?) } else { shape(args)? };
+    if let Some(shape) = solid {
         let parent_from_object = args.map()?;
         let material = args.index("material", 'm', ir.materials.len())?.map(MaterialId);
         return Ok(Leaf::Solid { shape, parent_from_object, material });
     }
-    let surface = surface(args)?;
+    let surface = surface(args, meshes)?;
     let parent_from_object = args.map()?;
     let material = args.index("material", 'm', ir.materials.len())?.map(MaterialId);
     Ok(Leaf::Surface { surface, parent_from_object, material })
 }
 
-fn surface(args: &mut Args) -> Result<Surface, Fault> {
+fn mesh_solid(args: &mut Args, meshes: Meshes<'_>) -> Result<Shape, Fault> {
+    let (path, mesh) = mesh(args, meshes)?;
+    match ClosedMesh::new(path, (*mesh).clone()) {
+        Ok((mesh, _)) => Ok(Shape::Mesh(Arc::new(mesh))),
+        Err(error) => Err((args.offset, error.to_string())),
+    }
+}
+
+/// The path of a mesh, and its content.
+fn mesh(args: &mut Args, meshes: Meshes<'_>) -> Result<(Arc<str>, Arc<TriangleMesh>), Fault> {
+    let path: Arc<str> = args.text("path")?.into();
+    let mesh = meshes(&path).ok_or_else(|| (args.offset, format!("there is no mesh `{path}`")))?;
+    Ok((path, mesh))
+}
+
+fn surface(args: &mut Args, meshes: Meshes<'_>) -> Result<Surface, Fault> {
     fn corners<const N: usize>(args: &mut Args) -> Result<[DVec3; N], Fault> {
         let mut corners = [DVec3::ZERO; N];
         for corner in &mut corners {
@@ -287,7 +314,10 @@ fn surface(args: &mut Args) -> Result<Surface, Fault> {
         "rectangle" => Surface::Rectangle { width: args.float("width")?, depth: args.float("depth")? },
         "disk" => Surface::Disk { radius: args.float("radius")? },
         "plane" => Surface::Plane,
-        "mesh" => Surface::Mesh { path: args.text("path")?.into() },
+        "mesh" => {
+            let (path, mesh) = mesh(args, meshes)?;
+            Surface::Mesh { path, mesh }
+        }
         _ => return args.unknown("node"),
     })
 }
@@ -426,15 +456,27 @@ mod tests {
         ]
     }
 
+    fn tetrahedron() -> Arc<TriangleMesh> {
+        Arc::new(TriangleMesh {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+            ..TriangleMesh::default()
+        })
+    }
+
     fn any_leaf() -> impl Strategy2<Value = Leaf> {
-        let shape = crate::shape_text::tests::any_shape();
+        let mesh_solid = "[a-z]{1,8}".prop_map(|path| {
+            let (mesh, _) = ClosedMesh::new(path.into(), (*tetrahedron()).clone()).unwrap();
+            Shape::Mesh(Arc::new(mesh))
+        });
+        let shape = prop_oneof![9 => crate::shape_text::tests::any_shape(), 1 => mesh_solid];
         let surface = prop_oneof![
             [vector(), vector(), vector()].prop_map(Surface::Triangle),
             [vector(), vector(), vector(), vector()].prop_map(Surface::Quad),
             (positive(), positive()).prop_map(|(width, depth)| Surface::Rectangle { width, depth }),
             positive().prop_map(|radius| Surface::Disk { radius }),
             Just(Surface::Plane),
-            "[ -~é\n\"\\\\]{1,8}".prop_map(|path| Surface::Mesh { path: path.into() }),
+            "[ -~é\n\"\\\\]{1,8}".prop_map(|path| Surface::Mesh { path: path.into(), mesh: tetrahedron() }),
         ];
         prop_oneof![
             (shape, any_map()).prop_map(|(shape, parent_from_object)| Leaf::Solid {
@@ -542,7 +584,7 @@ mod tests {
         #[test]
         fn what_is_printed_reads_back_and_prints_the_same(ir in any_ir()) {
             let text = ir.to_string();
-            let back = read(&text).map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
+            let back = read_with(&text, &|_| Some(tetrahedron())).map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
             prop_assert_eq!(&back, &ir);
             prop_assert_eq!(back.to_string(), text);
         }
@@ -555,7 +597,7 @@ mod tests {
             let mut end = prefix.min(text.len());
             while !text.is_char_boundary(end) { end -= 1; }
             let damaged = format!("{}{garbage}{}", &text[..end], &text[end..]);
-            if let Ok(ir) = read(&damaged) {
+            if let Ok(ir) = read_with(&damaged, &|_| Some(tetrahedron())) {
                 let _ = verify(&ir);
             }
         }
@@ -570,6 +612,7 @@ mod tests {
             ("ir 1\n%1 = union() @0:1..2\nroot %1", "2:1: expected the next node, `%0`"),
             ("ir 1\n%0 = union() @0:1..2\n", "3:1: there is no `root`"),
             ("ir 1\n%0 = plane(at: [1, 2]) @0:1..2", "2:16: expected 3 numbers"),
+            ("ir 1\n%0 = mesh(path: \"a.ply\") @0:1..2", "2:6: there is no mesh `a.ply`"),
             ("ir 1\n%0 = plane(size: 2) @0:1..2", "2:18: `plane` takes no such argument"),
         ];
         for (text, expected) in cases {

@@ -5,6 +5,7 @@ use std::fmt::{self, Formatter};
 use arsc_geometry::{Hyperboloid, Paraboloid, Shape};
 
 use crate::args::Args;
+use crate::print::Quoted;
 use crate::term::Fault;
 use crate::write::Call;
 
@@ -23,6 +24,7 @@ pub(crate) fn open_shape<'a, 'b>(f: &'a mut Formatter<'b>, shape: &Shape) -> Res
             .float("height", height),
         Shape::Torus { major, minor } => Call::new(f, "torus")?.float("major", major)?.float("minor", minor),
         Shape::HalfSpace => Call::new(f, "half_space"),
+        Shape::Mesh(ref mesh) => Call::new(f, "mesh_solid")?.arg("path", Quoted(mesh.name())),
         Shape::Paraboloid(Paraboloid { radius, height }) => {
             Call::new(f, "paraboloid")?.float("radius", radius)?.float("height", height)
         }

@@ -154,7 +154,10 @@ fn check_surface(surface: &Surface) -> Check {
         }
         Surface::Disk { radius } => require(positive(*radius), "a size is not positive and finite"),
         Surface::Plane => Ok(()),
-        Surface::Mesh { path } => require(!path.is_empty(), "the path is empty"),
+        Surface::Mesh { path, mesh } => {
+            require(!path.is_empty(), "the path is empty")?;
+            require(mesh.is_valid(), "the mesh has an index or a coordinate out of range")
+        }
     }
 }
 

@@ -97,11 +97,14 @@ fn hash_surface(surface: &Surface, hasher: &mut FxHasher) {
         Surface::Rectangle { width, depth } => [*width, *depth].iter().for_each(|&x| hash_f64(x, hasher)),
         Surface::Disk { radius } => hash_f64(*radius, hasher),
         Surface::Plane => {}
-        Surface::Mesh { path } => path.hash(hasher),
+        Surface::Mesh { path, .. } => path.hash(hasher),
     }
 }
 
 fn hash_shape(shape: &Shape, hasher: &mut FxHasher) {
     std::mem::discriminant(shape).hash(hasher);
+    if let Shape::Mesh(mesh) = shape {
+        mesh.name().hash(hasher);
+    }
     shape.for_each_size(&mut |x| hash_f64(x, hasher));
 }

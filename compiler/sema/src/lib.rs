@@ -7,6 +7,7 @@ mod actions;
 mod check;
 mod code;
 mod eval;
+mod meshes;
 mod reference;
 mod registry;
 mod types;
@@ -18,6 +19,7 @@ use std::sync::Arc;
 
 use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Diagnostic, SourceId, Span};
+use arsc_geometry::TriangleMesh;
 use arsc_ir::Ir;
 use arsc_syntax::ast;
 
@@ -39,7 +41,17 @@ pub enum AssetError {
     NotText,
     TooLarge,
     Forbidden,
+    /// It is there and is not what its format demands; the reason.
+    Malformed(String),
     Other(String),
+}
+
+/// A mesh from a file.
+#[derive(Clone, Debug)]
+pub struct MeshFile {
+    /// Relative to the root script's folder.
+    pub path: Arc<str>,
+    pub mesh: Arc<TriangleMesh>,
 }
 
 /// Data files named in scripts, relative to the module that names them.
@@ -47,8 +59,8 @@ pub trait Assets {
     /// The text of a small table (a spectrum).
     fn text(&self, from: SourceId, path: &str) -> Result<Arc<str>, AssetError>;
 
-    /// Whether a large file (a mesh) is there; gives its path relative to the root script's folder.
-    fn probe(&self, from: SourceId, path: &str) -> Result<String, AssetError>;
+    /// A triangle mesh. The same file gives the same mesh without being read again.
+    fn mesh(&self, from: SourceId, path: &str) -> Result<MeshFile, AssetError>;
 }
 
 /// Ceilings on what a script may use. Exceeding one is a diagnostic.

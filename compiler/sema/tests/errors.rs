@@ -170,6 +170,12 @@ fn values() {
     expect("scene { sphere() |> mirror((0, 0, 0)) }", &[("E0201", "(0, 0, 0)")]);
     expect("scene { union([]) }", &[("E0207", "union([])")]);
     expect("scene { mesh(\"bunny.ply\"); mesh(\"hare.ply\") }", &[("E0210", "\"hare.ply\"")]);
+    expect("scene { mesh(\"torn.ply\"); mesh_solid(\"torn.ply\") }", &[("E0214", "\"torn.ply\"")]);
+    expect("scene { mesh_solid(\"broken.ply\") }", &[("E0213", "\"broken.ply\"")]);
+    expect("scene { mesh_solid(\"bunny.ply\") - mesh_solid(\"bunny.ply\") }", &[]);
+    expect("scene { mesh_solid(\"flipped.ply\") }", &[("W0114", "\"flipped.ply\"")]);
+    expect("scene { mesh_solid(\"inverted.ply\") }", &[("W0114", "\"inverted.ply\"")]);
+    expect("scene { mesh(\"degenerate.ply\") }", &[("W0115", "\"degenerate.ply\"")]);
     expect("camera perspective(eye: (0, 0, 0), target: (0, 0, 0))", &[("E0201", "(0, 0, 0)")]);
     expect(
         "camera perspective(eye: (0, 0, 5), target: (0, 0, 0))",

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use arsc_geometry::Shape;
+use arsc_geometry::{Shape, TriangleMesh};
 
 /// The caller's number for a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -26,23 +26,14 @@ pub enum Strategy {
     Kd,
     /// `Kd` for solids with meshes as operands, `Tree` for the others.
     Hybrid,
-    /// `Kd` that evaluates only what changes along the ray: the strongest opponent of `Local`.
-    Incremental,
     /// Every leaf, and the whole expression at every crossing: what tests compare the others with.
     Oracle,
 }
 
 impl Strategy {
     /// Those that a script may name.
-    pub const ALL: [Strategy; 7] = [
-        Strategy::Local,
-        Strategy::Native,
-        Strategy::Collect,
-        Strategy::Tree,
-        Strategy::Kd,
-        Strategy::Hybrid,
-        Strategy::Incremental,
-    ];
+    pub const ALL: [Strategy; 6] =
+        [Strategy::Local, Strategy::Native, Strategy::Collect, Strategy::Tree, Strategy::Kd, Strategy::Hybrid];
 
     /// As scripts and the command line write it.
     pub fn name(self) -> &'static str {
@@ -53,7 +44,6 @@ impl Strategy {
             Strategy::Tree => "tree",
             Strategy::Kd => "kd",
             Strategy::Hybrid => "hybrid",
-            Strategy::Incremental => "incremental",
             Strategy::Oracle => "oracle",
         }
     }
@@ -82,15 +72,6 @@ pub struct CsgLeaf {
 pub struct Solid {
     pub tree: Csg,
     pub leaves: Vec<CsgLeaf>,
-}
-
-/// Indexed triangles; normals and uvs are empty or one per vertex.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct TriangleMesh {
-    pub positions: Vec<[f32; 3]>,
-    pub normals: Vec<[f32; 3]>,
-    pub uvs: Vec<[f32; 2]>,
-    pub triangles: Vec<[u32; 3]>,
 }
 
 /// Open geometry in object space.

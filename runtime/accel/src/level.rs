@@ -10,7 +10,7 @@ use crate::query::{Extent, Mode, Query, View};
 use crate::solid::{SolidModel, SolidRay};
 use crate::strategies::{SolidTracer, Tracer};
 use crate::transition::Transition;
-use crate::{AccelError, Budget, Strategy};
+use crate::{AccelError, Strategy};
 
 /// Solids and how their parts are numbered.
 pub struct Solids {
@@ -28,12 +28,6 @@ impl Solids {
             next += solid.leaves.len() as u32;
         }
         Solids { models, first_parts }
-    }
-
-    /// What each solid gets of a budget for all.
-    pub fn shares(&self, budget: &Budget) -> impl Iterator<Item = Budget> {
-        let all: usize = self.models.iter().map(|solid| solid.leaves.len()).sum();
-        self.models.iter().map(move |solid| budget.share(solid.leaves.len(), all))
     }
 
     /// The solids with their numbers.
@@ -69,9 +63,9 @@ pub struct Level {
 }
 
 impl Level {
-    pub fn new(models: Vec<Arc<SolidModel>>, strategy: Strategy, budget: &Budget) -> Level {
+    pub fn new(models: Vec<Arc<SolidModel>>, strategy: Strategy) -> Level {
         let solids = Solids::new(models);
-        let tracer = Tracer::build(&solids, strategy, budget);
+        let tracer = Tracer::build(&solids, strategy);
         Level { solids, tracer }
     }
 
@@ -132,9 +126,8 @@ impl Prototype {
         device: &Device,
         solid: Arc<SolidModel>,
         strategy: Strategy,
-        budget: &Budget,
     ) -> Result<EmbreeScene<Prototype>, AccelError> {
-        let level = Level::new(vec![solid], strategy, budget);
+        let level = Level::new(vec![solid], strategy);
         let extent = Extent::new(level.bounds());
         let primitives = level.primitive_count();
         let mut builder = SceneBuilder::new(device, Arc::new(Prototype { level, extent }), BuildQuality::High)?;

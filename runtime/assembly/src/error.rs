@@ -1,6 +1,5 @@
 //! Why a scene could not be rendered.
 
-use crate::MeshError;
 use crate::host::HostError;
 
 /// An operational error; the cause is chained as its source.
@@ -9,10 +8,6 @@ pub enum AssemblyError {
     /// The IR is not what `arsc-opt` promises: a bug of the compiler.
     #[error("the scene is not in normal form: {0}")]
     NotNormal(&'static str),
-    #[error("cannot read {path}")]
-    Open { path: String, source: HostError },
-    #[error("cannot use the mesh {path}")]
-    Mesh { path: String, source: MeshError },
     #[error("cannot write {name}")]
     Write { name: String, source: HostError },
     #[error("cannot make the picture")]

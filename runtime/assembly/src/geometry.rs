@@ -9,16 +9,15 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use arsc_accel::{Csg, CsgLeaf, Instance, MaterialIndex, SceneGeometry, Solid, Surface, SurfaceShape, TriangleMesh};
+use arsc_accel::{Csg, CsgLeaf, Instance, MaterialIndex, SceneGeometry, Solid, Surface, SurfaceShape};
 use arsc_ir::{Ir, Leaf, MaterialId, NodeId, NodeKind};
 use glam::DVec2;
 
-use crate::{AssemblyError, Host, MeshReader, Ply};
+use crate::AssemblyError;
 
 /// Lowers the members of the root that can be hit; lights and environments are left to [`crate::lights`].
-pub fn lower(ir: &Ir, host: &dyn Host) -> Result<SceneGeometry, AssemblyError> {
-    let mut lowering =
-        Lowering { ir, host, geometry: SceneGeometry::default(), shared: HashMap::new(), meshes: HashMap::new() };
+pub fn lower(ir: &Ir) -> Result<SceneGeometry, AssemblyError> {
+    let mut lowering = Lowering { ir, geometry: SceneGeometry::default(), shared: HashMap::new() };
     for &member in members(ir)? {
         lowering.member(member)?;
     }
@@ -44,12 +43,9 @@ pub fn node(ir: &Ir, id: NodeId) -> Result<&arsc_ir::Node, AssemblyError> {
 
 struct Lowering<'a> {
     ir: &'a Ir,
-    host: &'a dyn Host,
     geometry: SceneGeometry,
     /// Solids of instances, looked up only.
     shared: HashMap<NodeId, Arc<Solid>>,
-    /// Meshes by path, looked up only.
-    meshes: HashMap<Arc<str>, Arc<TriangleMesh>>,
 }
 
 impl Lowering<'_> {
@@ -129,23 +125,9 @@ impl Lowering<'_> {
             }
             arsc_ir::Surface::Disk { radius } => SurfaceShape::Disk { radius: *radius },
             arsc_ir::Surface::Plane => SurfaceShape::Plane,
-            arsc_ir::Surface::Mesh { path } => SurfaceShape::Mesh(self.mesh(path)?),
+            arsc_ir::Surface::Mesh { mesh, .. } => SurfaceShape::Mesh(mesh.clone()),
         };
         Ok(Surface { shape, world_from_object: *parent_from_object, material: material_index(*material)? })
-    }
-
-    fn mesh(&mut self, path: &Arc<str>) -> Result<Arc<TriangleMesh>, AssemblyError> {
-        if let Some(mesh) = self.meshes.get(path) {
-            return Ok(mesh.clone());
-        }
-        let file = self.host.open(path).map_err(|source| AssemblyError::Open { path: path.to_string(), source })?;
-        let mut reader = std::io::BufReader::with_capacity(1 << 16, file.content);
-        let mesh = Ply
-            .read(&mut reader, file.bytes)
-            .map_err(|source| AssemblyError::Mesh { path: path.to_string(), source })?;
-        let mesh = Arc::new(mesh);
-        self.meshes.insert(path.clone(), mesh.clone());
-        Ok(mesh)
     }
 }
 

@@ -1,22 +1,12 @@
-//! What a run needs from outside: files, a place for messages, and somebody to tell about progress.
+//! What a run needs from outside: a place for pictures and messages, and somebody to tell about progress.
 
 use std::path::PathBuf;
 
 /// A failure of the host, with its own words.
 pub type HostError = Box<dyn std::error::Error + Send + Sync>;
 
-/// A file that a scene names.
-pub struct OpenFile {
-    pub content: Box<dyn std::io::Read>,
-    /// Length of the content.
-    pub bytes: u64,
-}
-
 /// The world outside of the renderer.
 pub trait Host {
-    /// Opens a data file; the path is relative to the script's folder.
-    fn open(&self, path: &str) -> Result<OpenFile, HostError>;
-
     /// Writes a picture whole or not at all. `name` is the script's and relative to the output folder. Gives the
     /// place, or `None` if the picture is not wanted.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<Option<PathBuf>, HostError>;

@@ -1,7 +1,7 @@
 //! From the IR to a picture: the one place that turns IR into runtime objects, and the action sequence.
 //!
 //! In goes an IR in the normal form that `arsc-opt` documents; everything else (spans, parameters, file names as the
-//! author wrote them) ends here. Files, messages, progress and the clock are reached through [`Host`] alone.
+//! author wrote them) ends here. Pictures, messages, progress and the clock are reached through [`Host`] alone.
 //! [`run`] does the whole; [`trace_scene`] gives the geometry alone, for questions about rays.
 
 mod camera;
@@ -12,8 +12,6 @@ mod lights;
 mod materials;
 mod measure;
 mod measure_rays;
-mod mesh;
-mod ply;
 mod sequence;
 mod settings;
 mod stage;
@@ -21,19 +19,13 @@ mod stage;
 mod tests;
 
 pub use error::AssemblyError;
-pub use host::{Host, HostError, OpenFile};
+pub use host::{Host, HostError};
 pub use measure::{Measurement, measure};
 pub use measure_rays::{RayMeasurement, Sight, measure_rays};
-pub use mesh::{MeshError, MeshReader};
-pub use ply::Ply;
 pub use sequence::{Outcome, RenderReport, actions, run};
 pub use settings::Settings;
 
 /// The geometry of a scene in normal form, built for tracing.
-pub fn trace_scene(
-    ir: &arsc_ir::Ir,
-    strategy: arsc_accel::Strategy,
-    host: &dyn Host,
-) -> Result<arsc_accel::Scene, AssemblyError> {
-    stage::build(geometry::lower(ir, host)?, strategy)
+pub fn trace_scene(ir: &arsc_ir::Ir, strategy: arsc_accel::Strategy) -> Result<arsc_accel::Scene, AssemblyError> {
+    stage::build(geometry::lower(ir)?, strategy)
 }

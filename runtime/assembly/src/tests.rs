@@ -2,21 +2,20 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use arsc_diagnostics::{SourceId, Span};
-use arsc_geometry::{DAffine3, DVec3};
+use arsc_geometry::{ClosedMesh, DAffine3, DVec3, TriangleMesh};
 use arsc_ir::{
     Action, ActionAt, Attributes, Bsdf, Builder, Emitter, Environment, Exposure, Ir, NodeId, NodeKind, Precedence,
     Shape, Spectrum, Surface,
 };
 
-use crate::{AssemblyError, Host, HostError, OpenFile, Outcome, Settings, run};
+use crate::{AssemblyError, Host, HostError, Outcome, Settings, run};
 
 /// Keeps what is written; `cancel_after` counts the questions whether to stop.
 #[derive(Default)]
 struct Memory {
-    files: BTreeMap<String, Vec<u8>>,
     written: Mutex<BTreeMap<String, Vec<u8>>>,
     said: Mutex<Vec<String>>,
     cancelled: bool,
@@ -32,11 +31,6 @@ impl arsc_render::Progress for Flag {
 }
 
 impl Host for Memory {
-    fn open(&self, path: &str) -> Result<OpenFile, HostError> {
-        let bytes = self.files.get(path).ok_or("there is no such file")?.clone();
-        Ok(OpenFile { bytes: bytes.len() as u64, content: Box::new(std::io::Cursor::new(bytes)) })
-    }
-
     fn write(&self, name: &str, bytes: &[u8]) -> Result<Option<PathBuf>, HostError> {
         self.written.lock().unwrap().insert(name.to_owned(), bytes.to_vec());
         Ok(Some(PathBuf::from(name)))
@@ -232,28 +226,32 @@ fn a_lamp_goes_behind_the_ceiling_in_whose_plane_it_lies() {
     let emitter = Some(b.emitter(Emitter { radiance: Spectrum::Constant(1.0), two_sided: false }));
     let lamp = b.attributes(Attributes { emitter, ..Attributes::default() }, Precedence::Inner, lamp, NOWHERE);
     let ir = scene(b, vec![lamp, ceiling], vec![]);
-    let surfaces = crate::geometry::lower(&ir, &Memory::default()).unwrap().surfaces;
+    let surfaces = crate::geometry::lower(&ir).unwrap().surfaces;
     let emits = |i: usize| ir.materials[surfaces[i].material.0 as usize].emitter.is_some();
     assert!(surfaces.len() == 2 && !emits(0) && emits(1));
 }
 
 #[test]
-fn meshes_come_through_the_host() {
-    let mesh = |path: &str| {
-        let mut b = Builder::new();
-        let mesh = b.surface(Surface::Mesh { path: path.into() }, DAffine3::IDENTITY, NOWHERE);
-        let sky = environment(&mut b, 1.0);
-        scene(b, vec![mesh, sky], vec![Action::BoundingBoxes])
+fn meshes_are_traced_as_surfaces_and_as_solids() {
+    let mesh = TriangleMesh {
+        positions: vec![[0.0; 3], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.0]],
+        triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+        ..TriangleMesh::default()
     };
-    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
-               element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n2 0 0\n0 3 0\n3 0 1 2\n";
-    let files =
-        BTreeMap::from([("good.ply".to_owned(), ply.into()), ("bad.ply".to_owned(), b"ply\nnonsense".to_vec())]);
-    let host = Memory { files, ..Memory::default() };
-    run(&mesh("good.ply"), &small(), &host).unwrap();
-    assert!(
-        matches!(run(&mesh("bad.ply"), &small(), &host), Err(AssemblyError::Mesh { path, .. }) if path == "bad.ply")
-    );
-    assert!(matches!(run(&mesh("missing.ply"), &small(), &host), Err(AssemblyError::Open { .. })));
-    assert!(host.said.into_inner().unwrap()[0].ends_with("[0, 0, 0] to [2, 3, 0]"));
+    let (closed, _) = ClosedMesh::new("a.ply".into(), mesh.clone()).unwrap();
+    let closed = Arc::new(closed);
+    for open in [true, false] {
+        let mut b = Builder::new();
+        let part = if open {
+            let surface = Surface::Mesh { path: "a.ply".into(), mesh: Arc::new(mesh.clone()) };
+            b.surface(surface, DAffine3::IDENTITY, NOWHERE)
+        } else {
+            b.solid(Shape::Mesh(closed.clone()), DAffine3::IDENTITY, NOWHERE)
+        };
+        let sky = environment(&mut b, 1.0);
+        let ir = scene(b, vec![part, sky], vec![Action::BoundingBoxes]);
+        let host = Memory::default();
+        run(&ir, &small(), &host).unwrap();
+        assert!(host.said.into_inner().unwrap()[0].ends_with("[0, 0, 0] to [2, 3, 1]"));
+    }
 }

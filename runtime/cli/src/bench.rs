@@ -104,7 +104,7 @@ fn measure(scene: &Path, args: &Args) -> Result<Line, Exit> {
     let compiled = compile(&args.scene_args(scene), true)?;
     let compile_seconds = start.elapsed().as_secs_f64();
     bug::stage("bench");
-    let machine = Machine::new(&compiled.folder, None, true);
+    let machine = Machine::new(None, true);
     let settings = args.settings.to_settings();
     let measured = arsc_assembly::measure(&compiled.ir, &settings, &machine, args.seconds).map_err(|e| failure(&e))?;
     Ok(Line {

@@ -58,7 +58,7 @@ pub fn run(args: &Args) -> Exit {
 fn measure(scene: &Path, args: &Args) -> Result<Line, Exit> {
     let compiled = compile(&args.scene_args(scene), true)?;
     bug::stage("bench");
-    let machine = Machine::new(&compiled.folder, None, true);
+    let machine = Machine::new(None, true);
     let settings = args.settings.to_settings();
     let measured =
         measure_rays(&compiled.ir, &settings, &machine, args.repeat, &thread_seconds).map_err(|e| failure(&e))?;

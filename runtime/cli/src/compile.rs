@@ -19,7 +19,6 @@ pub struct Scene {
     has_scene: bool,
     /// Where findings of later stages point.
     pub sources: SourceMap,
-    pub folder: ScriptFolder,
     /// The file's name without extension; `scene` for standard input.
     pub name: String,
     /// Of the texts of the script and its imports, and of `--set`: the first 128 bits of SHA-256 in hexadecimal.
@@ -66,9 +65,7 @@ fn with(args: &SceneArgs, quiet: bool, stages: Stages) -> Result<Scene, Exit> {
     }
     let (has_errors, has_scene) = (compiled.has_errors(), compiled.has_scene);
     match compiled.ir {
-        Some(ir) if !has_errors => {
-            Ok(Scene { ir, has_scene, sources: compiled.sources, folder, name: name(args), hash })
-        }
+        Some(ir) if !has_errors => Ok(Scene { ir, has_scene, sources: compiled.sources, name: name(args), hash }),
         _ => Err(Exit::Findings),
     }
 }
@@ -120,6 +117,6 @@ pub fn words(error: &LoadError) -> String {
         LoadError::NotText(offset) => format!("it is not UTF-8 text (byte {offset})"),
         LoadError::TooLarge { bytes } => format!("it is too large ({bytes} bytes or more)"),
         LoadError::Forbidden => "it lies outside of what may be read (see --allow-read)".into(),
-        LoadError::Other(text) => text.clone(),
+        LoadError::Malformed(text) | LoadError::Other(text) => text.clone(),
     }
 }

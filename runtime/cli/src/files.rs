@@ -3,11 +3,13 @@
 //! Reading: below the script's folder and the folders granted with `--allow-read`, links resolved first. Writing: below
 //! the output folder alone; names in scripts are relative and may not climb out of it, not even through a link.
 
-use std::io::Read;
+use std::io::{BufReader, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use arsc_driver::{LoadError, Loader};
+use arsc_geometry::TriangleMesh;
+use arsc_mesh::MeshError;
 
 /// Largest script or table, bytes. The compiler has its own, smaller limit.
 const LARGEST_TEXT: u64 = 256 << 20;
@@ -48,12 +50,18 @@ impl Loader for ScriptFolder {
         read_text(std::fs::File::open(self.resolve(path)?).map_err(load_error)?)
     }
 
-    fn probe(&self, path: &str) -> Result<(), LoadError> {
+    fn mesh(&self, path: &str) -> Result<Arc<TriangleMesh>, LoadError> {
         let real = self.resolve(path)?;
         if !real.is_file() {
             return Err(LoadError::Other("not a file".into()));
         }
-        std::fs::File::open(real).map(drop).map_err(load_error)
+        let file = std::fs::File::open(real).map_err(load_error)?;
+        let bytes = file.metadata().map_err(load_error)?.len();
+        let mesh = arsc_mesh::read(path, &mut BufReader::new(file), bytes).map_err(|error| match error {
+            MeshError::Read(error) => load_error(error),
+            error => LoadError::Malformed(error.to_string()),
+        })?;
+        Ok(Arc::new(mesh))
     }
 
     fn list(&self, folder: &str) -> Vec<String> {

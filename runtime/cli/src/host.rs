@@ -3,14 +3,12 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use arsc_assembly::{Host, HostError, OpenFile};
+use arsc_assembly::{Host, HostError};
 
-use crate::compile::words;
-use crate::files::{Output, ScriptFolder};
+use crate::files::Output;
 use crate::progress::Progress;
 
 pub struct Machine<'a> {
-    pub folder: &'a ScriptFolder,
     /// `None`: nothing is written.
     pub output: Option<&'a Output>,
     pub quiet: bool,
@@ -18,18 +16,12 @@ pub struct Machine<'a> {
 }
 
 impl<'a> Machine<'a> {
-    pub fn new(folder: &'a ScriptFolder, output: Option<&'a Output>, quiet: bool) -> Machine<'a> {
-        Machine { folder, output, quiet, start: Instant::now() }
+    pub fn new(output: Option<&'a Output>, quiet: bool) -> Machine<'a> {
+        Machine { output, quiet, start: Instant::now() }
     }
 }
 
 impl Host for Machine<'_> {
-    fn open(&self, path: &str) -> Result<OpenFile, HostError> {
-        let file = std::fs::File::open(self.folder.resolve(path).map_err(|error| words(&error))?)?;
-        let bytes = file.metadata()?.len();
-        Ok(OpenFile { content: Box::new(file), bytes })
-    }
-
     fn write(&self, name: &str, bytes: &[u8]) -> Result<Option<PathBuf>, HostError> {
         let Some(output) = self.output else { return Ok(None) };
         let place = output.place(name)?;

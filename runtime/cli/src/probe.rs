@@ -19,7 +19,6 @@ use crate::compile::{compile, words};
 use crate::exit::Exit;
 use crate::failure::failure;
 use crate::files::read_script;
-use crate::host::Machine;
 use crate::render::Csg;
 
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,8 +79,7 @@ pub fn run(args: &Args) -> Exit {
         Err(exit) => return exit,
     };
     bug::stage("build");
-    let machine = Machine::new(&scene.folder, None, true);
-    let traced = match arsc_assembly::trace_scene(&scene.ir, args.csg.into(), &machine) {
+    let traced = match arsc_assembly::trace_scene(&scene.ir, args.csg.into()) {
         Ok(traced) => traced,
         Err(error) => return failure(&error),
     };

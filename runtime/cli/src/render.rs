@@ -29,8 +29,6 @@ pub enum Csg {
     Kd,
     /// `kd` for solids with mesh operands, `tree` for the others
     Hybrid,
-    /// As `kd`, but only what changes along the ray is evaluated
-    Incremental,
 }
 
 impl From<Csg> for arsc_accel::Strategy {
@@ -42,7 +40,6 @@ impl From<Csg> for arsc_accel::Strategy {
             Csg::Tree => arsc_accel::Strategy::Tree,
             Csg::Kd => arsc_accel::Strategy::Kd,
             Csg::Hybrid => arsc_accel::Strategy::Hybrid,
-            Csg::Incremental => arsc_accel::Strategy::Incremental,
         }
     }
 }
@@ -131,7 +128,7 @@ pub fn run(args: &Args) -> Exit {
     }
     interrupt::install();
     bug::stage("render");
-    let machine = Machine::new(&scene.folder, Some(&output), args.quiet);
+    let machine = Machine::new(Some(&output), args.quiet);
     let settings = settings(args, &scene);
     bug::seed(settings.seed.unwrap_or_else(|| script_seed(&scene.ir)));
     match arsc_assembly::run(&scene.ir, &settings, &machine) {

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::{Placed, Shape, SurfacePoint, cone, cuboid, sphere, torus};
+use crate::{Placed, Shape, SurfacePoint, TriangleMesh, closed_mesh::fold, cone, cuboid, sphere, torus};
 
 /// A point chosen on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,7 @@ impl Shape {
             Shape::Sphere { .. } | Shape::Torus { .. } | Shape::HalfSpace | Shape::InfiniteCylinder { .. } => 1,
             Shape::Box { .. } => 6,
             Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::Paraboloid(_) | Shape::Hyperboloid(_) => 3,
+            Shape::Mesh(mesh) => mesh.mesh().triangles.len() as u32,
         }
     }
 
@@ -38,12 +39,16 @@ impl Shape {
             Shape::InfiniteCylinder { .. } | Shape::HalfSpace => f64::INFINITY,
             Shape::Paraboloid(ref paraboloid) => paraboloid.areas()[face],
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.areas()[face],
+            Shape::Mesh(ref mesh) => 0.5 * mesh.mesh().cross(face).length(),
         }
     }
 
     /// Surface area in object space; infinite for unbounded shapes.
     pub fn area(&self) -> f64 {
-        (0..self.face_count()).map(|face| self.face_area(face)).sum()
+        match self {
+            Shape::Mesh(mesh) => mesh.area(),
+            _ => (0..self.face_count()).map(|face| self.face_area(face)).sum(),
+        }
     }
 
     /// A face chosen in proportion to area, and what is left of `u`, uniform again.
@@ -71,6 +76,7 @@ impl Shape {
             Shape::InfiniteCylinder { .. } | Shape::HalfSpace => return None,
             Shape::Paraboloid(ref paraboloid) => paraboloid.sample(face, u),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.sample(face, u),
+            Shape::Mesh(ref mesh) => mesh.mesh().surface(face as usize, fold(u)).p,
         })
     }
 
@@ -78,6 +84,9 @@ impl Shape {
     fn sample(&self, u: [f64; 2]) -> Option<(DVec3, u32)> {
         if !self.is_bounded() {
             return None;
+        }
+        if let Shape::Mesh(mesh) = self {
+            return Some(mesh.sample(u));
         }
         let (face, rest) = self.choose_face(u[0]);
         self.sample_face(face, [rest, u[1]]).map(|p| (p, face))
@@ -98,13 +107,16 @@ impl Placed {
         1.0 / (self.shape().area() * self.area_scale(world_normal))
     }
 
-    /// Surface area in the world, by stratified quadrature over object area (exact for similarities and boxes);
+    /// Surface area in the world, by stratified quadrature over object area (exact for similarities, boxes and meshes);
     /// infinite for unbounded shapes.
     pub fn area(&self) -> f64 {
         const STRATA: usize = 48;
         let object_area = self.shape().area();
         if object_area.is_infinite() {
             return object_area;
+        }
+        if let Shape::Mesh(mesh) = self.shape() {
+            return self.mesh_area(mesh.mesh());
         }
         let middle = |i: usize| (i as f64 + 0.5) / STRATA as f64;
         let mut sum = 0.0;
@@ -122,5 +134,13 @@ impl Placed {
             }
         }
         object_area * sum / (STRATA * STRATA) as f64
+    }
+
+    fn mesh_area(&self, mesh: &TriangleMesh) -> f64 {
+        let half_cross = |triangle: usize| {
+            let [a, b, c] = mesh.corners(triangle).map(|p| self.world_from_object().transform_vector3(p));
+            0.5 * (b - a).cross(c - a).length()
+        };
+        (0..mesh.triangles.len()).map(half_cross).sum()
     }
 }

@@ -7,7 +7,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::region::Region;
-use crate::{Aabb, Direct, Placed, Shape};
+use crate::{Aabb, ClosedMesh, Direct, Placed, Shape};
 
 /// How a box lies to a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +29,9 @@ impl Placed {
         if let Some(direct) = self.direct() {
             return classify_direct(direct, cell);
         }
+        if let Shape::Mesh(mesh) = self.shape() {
+            return self.classify_mesh(mesh, cell);
+        }
         let region = Region::new(self, cell);
         match self.shape() {
             Shape::Paraboloid(paraboloid) => return paraboloid.classify(&region),
@@ -41,6 +44,19 @@ impl Placed {
             Classification::Inside
         } else {
             Classification::Boundary
+        }
+    }
+}
+
+impl Placed {
+    /// All on one side unless a triangle reaches into the box.
+    fn classify_mesh(&self, mesh: &ClosedMesh, cell: &Aabb) -> Classification {
+        if mesh.reaches(self.world_from_object(), cell) {
+            Classification::Boundary
+        } else if self.contains(cell.center()) {
+            Classification::Inside
+        } else {
+            Classification::Outside
         }
     }
 }
@@ -82,8 +98,8 @@ impl Region {
             Shape::Cone { base_radius, top_radius, height } => self.misses_cone(base_radius, top_radius, height),
             Shape::Torus { major, minor } => self.misses_torus(major, minor),
             Shape::HalfSpace => self.z_range().0 > 0.0,
-            // They classify regions themselves.
-            Shape::Paraboloid(_) | Shape::Hyperboloid(_) => false,
+            // They are classified by themselves.
+            Shape::Paraboloid(_) | Shape::Hyperboloid(_) | Shape::Mesh(_) => false,
         }
     }
 

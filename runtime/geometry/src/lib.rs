@@ -10,6 +10,7 @@
 mod aabb;
 mod area;
 mod classify;
+mod closed_mesh;
 mod cone;
 mod crossings;
 mod cuboid;
@@ -25,10 +26,12 @@ mod shape;
 mod span;
 mod sphere;
 mod torus;
+mod triangle_mesh;
 
 pub use aabb::Aabb;
 pub use area::AreaPoint;
 pub use classify::Classification;
+pub use closed_mesh::{ClosedMesh, ClosedMeshError, MeshRepairs, Projected, Projection, crossing, fold};
 pub use crossings::Crossings;
 pub use foot::Foot;
 pub use glam::{DAffine3, DMat3, DVec2, DVec3};
@@ -38,3 +41,4 @@ pub use placed::{Direct, PlaceError, Placed, SurfacePoint, invert};
 pub use ray::Ray;
 pub use shape::{LocalPoint, Shape};
 pub use span::Span;
+pub use triangle_mesh::{TriangleMesh, TrianglePoint};

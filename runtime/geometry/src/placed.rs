@@ -176,6 +176,12 @@ impl Placed {
         SurfacePoint { p, p_error: self.error_at(p), n, uv: local.uv, dpdu }
     }
 
+    /// The interpolated normal of a face near `p`, unit, outward; `None` where it is the surface's own.
+    pub fn shading_normal(&self, p: DVec3, face: u32) -> Option<DVec3> {
+        let local = self.shape.shading_normal(self.object_from_world.transform_point3(p), face)?;
+        Some(self.world_normal(local))
+    }
+
     /// Bound on the error of a surface point near `p`, in world units.
     pub fn error_at(&self, p: DVec3) -> f64 {
         self.error_slope * p.abs().max_element() + self.error_floor
@@ -243,6 +249,7 @@ fn extent_along(shape: &Shape, row: DVec3, inverse: &DAffine3, axis: usize) -> (
         Shape::HalfSpace => half_space_extent(inverse, axis, row),
         Shape::Paraboloid(ref paraboloid) => (paraboloid.farthest(-row).dot(row), paraboloid.farthest(row).dot(row)),
         Shape::Hyperboloid(ref hyperboloid) => (-hyperboloid.support(-row), hyperboloid.support(row)),
+        Shape::Mesh(ref mesh) => mesh.extent_along(row),
     }
 }
 

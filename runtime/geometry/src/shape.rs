@@ -1,8 +1,10 @@
 //! The solid shapes in their canonical placement.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
-use crate::{Aabb, Crossings, Hyperboloid, Paraboloid, cone, cuboid, half_space, sphere, torus};
+use crate::{Aabb, ClosedMesh, Crossings, Hyperboloid, Paraboloid, cone, cuboid, half_space, sphere, torus};
 
 /// A closed solid in object space. Sizes are positive and finite; the compiler guarantees it.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +43,8 @@ pub enum Shape {
     HalfSpace,
     Paraboloid(Paraboloid),
     Hyperboloid(Hyperboloid),
+    /// What a closed triangle mesh bounds.
+    Mesh(Arc<ClosedMesh>),
 }
 
 /// A point on a shape's surface with its frame, in object space.
@@ -68,13 +72,13 @@ impl Shape {
                 radii && positive(height)
             }
             Shape::Torus { major, minor } => positive(major) && positive(minor),
-            Shape::HalfSpace => true,
+            Shape::HalfSpace | Shape::Mesh(_) => true,
             Shape::Paraboloid(ref paraboloid) => paraboloid.is_valid(),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.is_valid(),
         }
     }
 
-    /// Every number that the shape is made of, in a fixed order: equal shapes of one kind have equal numbers.
+    /// Every number that the shape is made of (but for meshes), in a fixed order: equal shapes of one kind have equal numbers.
     pub fn for_each_size(&self, visit: &mut dyn FnMut(f64)) {
         let sizes: &[f64] = match self {
             Shape::Sphere { radius } | Shape::InfiniteCylinder { radius } => &[*radius],
@@ -82,7 +86,7 @@ impl Shape {
             Shape::Cylinder { radius, height } => &[*radius, *height],
             Shape::Cone { base_radius, top_radius, height } => &[*base_radius, *top_radius, *height],
             Shape::Torus { major, minor } => &[*major, *minor],
-            Shape::HalfSpace => &[],
+            Shape::HalfSpace | Shape::Mesh(_) => &[],
             Shape::Paraboloid(Paraboloid { radius, height }) => &[*radius, *height],
             Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets }) => {
                 &[*radius, *slope, *half_height, f64::from(u8::from(*two_sheets))]
@@ -106,6 +110,7 @@ impl Shape {
             Shape::HalfSpace => p.z <= 0.0,
             Shape::Paraboloid(ref paraboloid) => paraboloid.contains(p),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.contains(p),
+            Shape::Mesh(ref mesh) => mesh.contains(p),
         }
     }
 
@@ -132,6 +137,7 @@ impl Shape {
             Shape::HalfSpace => Aabb::new(DVec3::NEG_INFINITY, DVec3::new(inf, inf, 0.0)),
             Shape::Paraboloid(ref paraboloid) => paraboloid.bounds(),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.bounds(),
+            Shape::Mesh(ref mesh) => *mesh.bounds(),
         }
     }
 
@@ -142,7 +148,7 @@ impl Shape {
 
     /// The shape is convex.
     pub fn is_convex(&self) -> bool {
-        !matches!(self, Shape::Torus { .. } | Shape::Hyperboloid(_))
+        !matches!(self, Shape::Torus { .. } | Shape::Hyperboloid(_) | Shape::Mesh(_))
     }
 
     /// Length that rounding errors of its own scale with.
@@ -156,6 +162,7 @@ impl Shape {
             Shape::HalfSpace => 0.0,
             Shape::Paraboloid(ref paraboloid) => paraboloid.radius.max(paraboloid.height),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.magnitude(),
+            Shape::Mesh(ref mesh) => mesh.magnitude(),
         }
     }
 
@@ -177,6 +184,7 @@ impl Shape {
             Shape::HalfSpace => half_space::crossings(origin, dir),
             Shape::Paraboloid(ref paraboloid) => unit(dir, |d| paraboloid.crossings(origin, d)),
             Shape::Hyperboloid(ref hyperboloid) => unit(dir, |d| hyperboloid.crossings(origin, d)),
+            Shape::Mesh(ref mesh) => mesh.crossings(origin, dir),
         }
     }
 
@@ -192,6 +200,15 @@ impl Shape {
             Shape::HalfSpace => half_space::surface(p),
             Shape::Paraboloid(ref paraboloid) => paraboloid.surface(p, face),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.surface(p, face),
+            Shape::Mesh(ref mesh) => mesh.surface(p, face),
+        }
+    }
+
+    /// The interpolated normal of a face near `p`, unit, on the outer side; `None` where it is the surface's own.
+    pub fn shading_normal(&self, p: DVec3, face: u32) -> Option<DVec3> {
+        match self {
+            Shape::Mesh(mesh) => mesh.shading_normal(p, face),
+            _ => None,
         }
     }
 }

@@ -28,6 +28,8 @@ codes! {
     error ASSET "E0210" asset: "a data file cannot be read";
     error TABLE "E0211" table: "a table of samples is malformed";
     error CONFLICTING_ATTRIBUTES "E0212" conflicting_attributes: "two attributes of one kind are attached at once";
+    error MESH "E0213" mesh: "a mesh file is not what its format demands";
+    error OPEN_MESH "E0214" open_mesh: "a mesh that is to be a solid does not close";
     error STACK "E0301" stack: "an action does not find what it needs on the stack";
     error NOT_IMPLEMENTED "E0901" not_implemented: "the capability is specified but not implemented yet";
     lint UNUSED_NAME "W0101" unused_name: "a name is defined but never used";
@@ -43,4 +45,6 @@ codes! {
     lint NO_OUTPUT "W0111" no_output: "an action sequence writes no file";
     lint EMPTY_SCENE "W0112" empty_scene: "a scene contains nothing";
     lint EMPTY_SCRIPT "W0113" empty_script: "a script declares nothing";
+    lint MESH_ORIENTATION "W0114" mesh_orientation: "faces of a closed mesh are turned the wrong way";
+    lint DEGENERATE_FACES "W0115" degenerate_faces: "faces of a mesh have no area";
 }

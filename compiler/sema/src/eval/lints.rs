@@ -89,7 +89,7 @@ impl Machine<'_> {
     }
 
     /// Reports once per place; in std modules at the user's call.
-    fn lint(&mut self, mut diagnostic: Diagnostic) {
+    pub(crate) fn lint(&mut self, mut diagnostic: Diagnostic) {
         if let (Some(caller), Some(label)) = (self.std_caller, diagnostic.labels.first_mut()) {
             label.span = caller;
         }

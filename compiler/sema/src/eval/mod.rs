@@ -13,6 +13,8 @@ mod params;
 mod pattern;
 mod tables;
 
+use std::sync::Arc;
+
 use rustc_hash::FxHashMap;
 
 use arsc_diagnostics::codes::sema as codes;
@@ -21,6 +23,7 @@ use arsc_geometry::DAffine3;
 use arsc_ir::{Bsdf, Emitter, Leaf, Node, NodeId, NodeKind, Shape, Surface};
 
 use crate::code::{GlobalId, Program, Site};
+use crate::meshes::ClosedOutcome;
 use crate::value::{Closure, Value};
 use crate::{Assets, Limits};
 
@@ -78,6 +81,8 @@ pub struct Machine<'a> {
     in_std: bool,
     collected: Vec<Value>,
     tables: FxHashMap<(SourceId, String), Table>,
+    /// By path.
+    pub(crate) closed_meshes: FxHashMap<Arc<str>, ClosedOutcome>,
     pub nodes: Vec<Node>,
     pub bsdfs: Vec<Bsdf>,
     pub emitters: Vec<Emitter>,
@@ -104,6 +109,7 @@ impl<'a> Machine<'a> {
             in_std: false,
             collected: Vec::new(),
             tables: FxHashMap::default(),
+            closed_meshes: FxHashMap::default(),
             nodes: Vec::new(),
             bsdfs: Vec::new(),
             emitters: Vec::new(),

@@ -30,7 +30,7 @@ use crate::value::Value;
 pub use csg::flatten as flatten_nodes;
 pub use lists::compare;
 pub use param::{Constraint, Default, Param};
-pub use surfaces::asset_failure;
+pub use surfaces::{asset_failure, shortened};
 
 /// Index into [`Registry::builtins`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -221,7 +221,6 @@ pub fn choices(ty: &Type) -> &'static [(&'static str, Value)] {
         (Strategy::Tree.name(), Value::Strategy(Strategy::Tree)),
         (Strategy::Kd.name(), Value::Strategy(Strategy::Kd)),
         (Strategy::Hybrid.name(), Value::Strategy(Strategy::Hybrid)),
-        (Strategy::Incremental.name(), Value::Strategy(Strategy::Incremental)),
     ];
     use arsc_ir::{Exposure, Strategy};
     match ty {

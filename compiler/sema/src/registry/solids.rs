@@ -21,6 +21,7 @@ pub fn builtins() -> Vec<Builtin> {
     let mut list = round();
     list.extend(quadrics());
     list.extend(flat());
+    list.extend(files());
     list.extend(not_yet());
     list
 }
@@ -210,6 +211,20 @@ fn block(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
     }
 }
 
+fn files() -> Vec<Builtin> {
+    vec![
+        solid(
+            "mesh_solid",
+            "A closed triangle mesh from a file. Its faces are its triangles, in the order of the file.",
+        )
+        .param(Param::new("path", Str, "PLY, OBJ or STL file, relative to the script"))
+        .runs(Solid, |m, args, site| {
+            let shape = m.closed_mesh(args[0].as_str(), site)?;
+            m.solid(shape, DAffine3::IDENTITY, site)
+        }),
+    ]
+}
+
 fn not_yet() -> Vec<Builtin> {
     let size = |name, doc| Param::new(name, Float, doc).positive();
     vec![
@@ -228,9 +243,6 @@ fn not_yet() -> Vec<Builtin> {
         solid("polyhedron", "The convex hull of points.")
             .param(Param::new("points", Type::list(Point), "points"))
             .later(Solid, "the convex polyhedron"),
-        solid("mesh_solid", "A closed triangle mesh from a file.")
-            .param(Param::new("path", Str, "PLY, OBJ or STL file, relative to the script"))
-            .later(Solid, "the closed mesh"),
         solid("height_field", "A solid between z = 0 and a height given by an image.")
             .param(Param::new("path", Str, "image file, relative to the script"))
             .param(Param::new("size", Vec3, "extent").vec3([1.0; 3]).positive())

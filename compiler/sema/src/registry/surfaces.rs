@@ -40,9 +40,12 @@ pub fn builtins() -> Vec<Builtin> {
             .runs(Surface, |m, args, site| m.surface(Shape::Disk { radius: args[0].as_float() }, site)),
         Builtin::new("plane", "The infinite plane z = 0, normal +z.")
             .runs(Surface, |m, _, site| m.surface(Shape::Plane, site)),
-        Builtin::new("mesh", "A triangle mesh from a PLY file, as an open surface.")
-            .param(Param::new("path", Str, "PLY file, relative to the script"))
-            .runs(Surface, mesh),
+        Builtin::new("mesh", "A triangle mesh from a file, as an open surface.")
+            .param(Param::new("path", Str, "PLY, OBJ or STL file, relative to the script"))
+            .runs(Surface, |m, args, site| {
+                let shape = m.open_mesh(args[0].as_str(), site)?;
+                m.surface(shape, site)
+            }),
     ]
 }
 
@@ -73,14 +76,6 @@ fn flat(site: &Site, message: &str) -> Box<arsc_diagnostics::Diagnostic> {
     Box::new(site.fail(codes::OUT_OF_RANGE, message))
 }
 
-fn mesh(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
-    let path = args[0].as_str();
-    match m.assets.probe(site.span.source, path) {
-        Ok(resolved) => m.surface(Shape::Mesh { path: resolved.into() }, site),
-        Err(error) => Err(asset_failure(site, path, &error)),
-    }
-}
-
 /// The diagnostic for a file that cannot be had, at the first argument.
 pub fn asset_failure(site: &Site, path: &str, error: &AssetError) -> Box<arsc_diagnostics::Diagnostic> {
     let reason = match error {
@@ -88,8 +83,15 @@ pub fn asset_failure(site: &Site, path: &str, error: &AssetError) -> Box<arsc_di
         AssetError::NotText => "is not text".to_owned(),
         AssetError::TooLarge => "is larger than the limit".to_owned(),
         AssetError::Forbidden => "lies outside of what scripts may read".to_owned(),
+        AssetError::Malformed(reason) => {
+            return site.fail_arg(0, codes::MESH, format!("the mesh `{}` cannot be used", shortened(path)), reason);
+        }
         AssetError::Other(reason) => format!("cannot be read: {reason}"),
     };
-    let path: String = path.chars().take(40).collect();
-    site.fail_arg(0, codes::ASSET, format!("the file `{path}` {reason}"), "named here")
+    site.fail_arg(0, codes::ASSET, format!("the file `{}` {reason}", shortened(path)), "named here")
+}
+
+/// A path for a message.
+pub fn shortened(path: &str) -> String {
+    path.chars().take(40).collect()
 }

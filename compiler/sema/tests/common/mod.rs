@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use arsc_diagnostics::{Diagnostic, SourceFile, SourceId, SourceMap};
-use arsc_sema::{Analysed, AssetError, Assets, Module, Options, Setting, analyse};
+use arsc_geometry::TriangleMesh;
+use arsc_sema::{Analysed, AssetError, Assets, MeshFile, Module, Options, Setting, analyse};
 use arsc_syntax::ast::{ImportPath, ItemKind};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
@@ -17,8 +18,22 @@ impl Assets for Files {
         std::fs::read_to_string(format!("{ROOT}/stdlib/{path}")).map(Arc::from).map_err(|_| AssetError::NotFound)
     }
 
-    fn probe(&self, _from: SourceId, path: &str) -> Result<String, AssetError> {
-        if path == "bunny.ply" { Ok(path.to_owned()) } else { Err(AssetError::NotFound) }
+    fn mesh(&self, _from: SourceId, path: &str) -> Result<MeshFile, AssetError> {
+        let mut mesh = TriangleMesh {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+            ..TriangleMesh::default()
+        };
+        match path {
+            "bunny.ply" => {}
+            "torn.ply" => drop(mesh.triangles.pop()),
+            "flipped.ply" => mesh.triangles[1].swap(0, 1),
+            "inverted.ply" => mesh.triangles.iter_mut().for_each(|t| t.swap(0, 1)),
+            "degenerate.ply" => mesh.triangles.push([0, 1, 1]),
+            "broken.ply" => return Err(AssetError::Malformed("the file ends in `face` 2 of 9".into())),
+            _ => return Err(AssetError::NotFound),
+        }
+        Ok(MeshFile { path: path.into(), mesh: Arc::new(mesh) })
     }
 }
 

@@ -2,7 +2,6 @@
 
 use arsc_geometry::Aabb;
 
-use crate::Budget;
 use crate::cells::{self, CellSet, Line, Window};
 use crate::level::Solids;
 use crate::query::{Extent, Mode, Query, slab};
@@ -26,14 +25,14 @@ pub struct Local {
 }
 
 impl Local {
-    pub fn build(solids: &Solids, budget: &Budget) -> Local {
+    pub fn build(solids: &Solids) -> Local {
         let mut local = Local::default();
-        for ((number, solid), share) in solids.numbered().zip(solids.shares(budget)) {
+        for (number, solid) in solids.numbered() {
             let core = cells::core(solid);
             if !core.is_empty() && !Extent::admits(&core) {
                 local.open.push(Open::Whole { solid: number });
             } else {
-                cells::append_solid(&mut local.cells, number, solid, &share);
+                cells::append_solid(&mut local.cells, number, solid);
                 if let Some((cell, core)) = cells::append_outer(&mut local.outer, number, solid) {
                     local.open.push(Open::Outer { cell, core });
                 }
@@ -46,7 +45,7 @@ impl Local {
         if solids.is_left_out(solid, query) {
             return;
         }
-        query.tests += solids.models[solid as usize].leaves.len() as u32;
+        query.tests += 1;
         let (ray, view) = (solids.near_ray(solid, query), query.view);
         oracle::transitions(&solids.models[solid as usize], &ray, |transition| {
             query.offer(solids.candidate(solid, transition, &ray, &view))
@@ -73,7 +72,7 @@ impl Local {
         if low > high {
             return;
         }
-        query.tests += cell.leaf_count();
+        query.tests += 1;
         let solid = &solids.models[cell.solid as usize];
         let window = Window { low, high, start: ray.start, tolerance: solid.tolerance };
         let line = Line {

@@ -1,16 +1,10 @@
-//! Triangle meshes from files: what every format has in common.
+//! What every format has in common: vertices and polygons, checked and cut into triangles.
 //!
-//! A [`MeshReader`] gives raw vertices and polygons to a [`MeshBuilder`], which checks and triangulates. Polygons with
-//! more than three corners are cut by ear clipping in the plane of their Newell normal, so that concave ones come out
-//! right; the winding is kept. Degenerate triangles (a corner twice, no area) are dropped. Positions become f32.
+//! Polygons with more than three corners are cut by ear clipping in the plane of their Newell normal, so that concave ones
+//! come out right; the winding is kept. Triangles without an area stay, for a closed mesh may need them.
 
-use arsc_accel::TriangleMesh;
+use arsc_geometry::TriangleMesh;
 use glam::{DVec2, DVec3};
-
-/// A file format. `bytes` is the length of `source`, against which the header's claims are checked.
-pub trait MeshReader {
-    fn read(&self, source: &mut dyn std::io::BufRead, bytes: u64) -> Result<TriangleMesh, MeshError>;
-}
 
 /// Ear clipping takes quadratic time: more corners than this in one polygon are an error.
 const MOST_CORNERS: usize = 1024;
@@ -18,12 +12,24 @@ const MOST_CORNERS: usize = 1024;
 /// What is wrong with a mesh file.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshError {
-    #[error("the file cannot be read as PLY")]
-    Ply(#[source] std::io::Error),
+    #[error("its name ends neither in .ply nor .obj nor .stl")]
+    Format,
+    #[error("it cannot be read")]
+    Read(#[source] std::io::Error),
+    #[error("it is no PLY file: {0}")]
+    Ply(std::io::Error),
+    #[error("it is no OBJ file: it has {0}")]
+    Obj(&'static str),
+    #[error("it is no STL file: {0}")]
+    Stl(std::io::Error),
+    #[error("the file ends in `{element}` {index} of {count}")]
+    Truncated { element: String, index: u64, count: u64 },
     #[error("the header declares no {0}")]
     Missing(&'static str),
     #[error("the header claims {count} of `{element}`, more than {bytes} bytes can hold")]
     TooMany { element: String, count: u64, bytes: u64 },
+    #[error("`{element}` {index} claims a list of {items} items")]
+    List { element: String, index: u64, items: u64 },
     #[error("vertex {vertex} has a coordinate that is not finite")]
     NotFinite { vertex: usize },
     #[error("face {face} names vertex {index}, but there are {vertices}")]
@@ -47,6 +53,7 @@ impl MeshBuilder {
         position: [f64; 3],
         normal: Option<[f64; 3]>,
         uv: Option<[f64; 2]>,
+        color: Option<[u8; 3]>,
     ) -> Result<(), MeshError> {
         let position = position.map(|c| c as f32);
         if !position.iter().all(|c| c.is_finite()) {
@@ -59,7 +66,19 @@ impl MeshBuilder {
         if let Some(uv) = uv {
             self.mesh.uvs.push(uv.map(|c| c as f32));
         }
+        self.mesh.colors.extend(color);
         Ok(())
+    }
+
+    /// Number of vertices so far.
+    pub fn vertices(&self) -> usize {
+        self.mesh.positions.len()
+    }
+
+    /// Makes room, for counts that have been checked.
+    pub fn reserve(&mut self, vertices: usize, faces: usize) {
+        self.mesh.positions.reserve_exact(vertices);
+        self.mesh.triangles.reserve_exact(faces);
     }
 
     /// A polygon, counter-clockwise as seen from the side of the normal.
@@ -69,19 +88,24 @@ impl MeshBuilder {
         if corners.len() > MOST_CORNERS {
             return Err(MeshError::Corners { face, corners: corners.len() });
         }
-        let vertices = self.mesh.positions.len();
-        let mut checked = Vec::with_capacity(corners.len());
-        for &index in corners {
-            match u32::try_from(index) {
-                Ok(i) if (i as usize) < vertices => checked.push(i),
-                _ => return Err(MeshError::Index { face, index, vertices }),
-            }
+        if let [a, b, c] = *corners {
+            let triangle = [self.index(face, a)?, self.index(face, b)?, self.index(face, c)?];
+            self.mesh.triangles.push(triangle);
+            return Ok(());
         }
-        match checked[..] {
-            [a, b, c] => self.triangle([a, b, c]),
-            _ => self.polygon(checked),
+        let checked = corners.iter().map(|&index| self.index(face, index)).collect::<Result<Vec<u32>, _>>()?;
+        if checked.len() > 3 {
+            self.polygon(checked);
         }
         Ok(())
+    }
+
+    fn index(&self, face: usize, index: i64) -> Result<u32, MeshError> {
+        let vertices = self.mesh.positions.len();
+        match u32::try_from(index) {
+            Ok(i) if (i as usize) < vertices => Ok(i),
+            _ => Err(MeshError::Index { face, index, vertices }),
+        }
     }
 
     /// Strips of triangles, ended by -1; every second triangle turns its winding.
@@ -96,7 +120,7 @@ impl MeshBuilder {
     }
 
     pub fn finish(mut self) -> Result<TriangleMesh, MeshError> {
-        if self.mesh.triangles.is_empty() {
+        if !(0..self.mesh.triangles.len()).any(|triangle| self.mesh.cross(triangle) != DVec3::ZERO) {
             return Err(MeshError::Empty);
         }
         // Normals that are not all usable are none.
@@ -109,18 +133,11 @@ impl MeshBuilder {
         {
             self.mesh.uvs.clear();
         }
-        Ok(self.mesh)
-    }
-
-    fn position(&self, vertex: u32) -> DVec3 {
-        DVec3::from_array(self.mesh.positions[vertex as usize].map(f64::from))
-    }
-
-    fn triangle(&mut self, [a, b, c]: [u32; 3]) {
-        let (p, q, r) = (self.position(a), self.position(b), self.position(c));
-        if (q - p).cross(r - p) != DVec3::ZERO {
-            self.mesh.triangles.push([a, b, c]);
+        if self.mesh.colors.len() != self.mesh.positions.len() {
+            self.mesh.colors.clear();
         }
+        debug_assert!(self.mesh.is_valid());
+        Ok(self.mesh)
     }
 
     fn polygon(&mut self, mut corners: Vec<u32>) {
@@ -131,18 +148,18 @@ impl MeshBuilder {
             let ear = (0..ring.len()).find(|&i| is_ear(&points, &ring, i)).unwrap_or(0);
             let n = ring.len();
             let [before, at, after] = [ring[(ear + n - 1) % n], ring[ear], ring[(ear + 1) % n]].map(|i| corners[i]);
-            self.triangle([before, at, after]);
+            self.mesh.triangles.push([before, at, after]);
             ring.remove(ear);
         }
         corners = ring.into_iter().map(|i| corners[i]).collect();
         if let [a, b, c] = corners[..] {
-            self.triangle([a, b, c]);
+            self.mesh.triangles.push([a, b, c]);
         }
     }
 
     /// The corners in the plane across the polygon's Newell normal, counter-clockwise.
     fn flatten(&self, corners: &[u32]) -> Vec<DVec2> {
-        let points: Vec<DVec3> = corners.iter().map(|&c| self.position(c)).collect();
+        let points: Vec<DVec3> = corners.iter().map(|&c| self.mesh.position(c)).collect();
         let next = |i: usize| points[(i + 1) % points.len()];
         let normal: DVec3 = (0..points.len()).map(|i| (points[i] - points[0]).cross(next(i) - points[0])).sum();
         let (x, y) = normal.try_normalize().unwrap_or(DVec3::Z).any_orthonormal_pair();
@@ -172,7 +189,7 @@ mod tests {
     fn builder(points: &[[f64; 2]]) -> MeshBuilder {
         let mut builder = MeshBuilder::default();
         for p in points {
-            builder.vertex([p[0], p[1], 3.0], None, None).unwrap();
+            builder.vertex([p[0], p[1], 3.0], None, None, None).unwrap();
         }
         builder
     }
@@ -217,8 +234,8 @@ mod tests {
         degenerate.face(&[0]).unwrap();
         degenerate.face(&[]).unwrap();
         assert!(matches!(degenerate.finish(), Err(MeshError::Empty)));
-        let nan = MeshBuilder::default().vertex([0.0, f64::NAN, 0.0], None, None);
+        let nan = MeshBuilder::default().vertex([0.0, f64::NAN, 0.0], None, None, None);
         assert!(matches!(nan, Err(MeshError::NotFinite { vertex: 0 })));
-        assert!(MeshBuilder::default().vertex([0.0, 1e300, 0.0], None, None).is_err(), "too large for f32");
+        assert!(MeshBuilder::default().vertex([0.0, 1e300, 0.0], None, None, None).is_err(), "too large for f32");
     }
 }
