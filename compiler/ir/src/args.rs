@@ -26,6 +26,14 @@ impl<'a> Args<'a> {
         }
     }
 
+    /// The next operand, if it is a list.
+    pub(crate) fn next_list(&mut self) -> Option<Term<'a>> {
+        match self.rest.front() {
+            Some((None, Term { kind: TermKind::List(_), .. })) => self.rest.pop_front().map(|(_, term)| term),
+            _ => None,
+        }
+    }
+
     pub(crate) fn optional(&mut self, name: &str) -> Option<Term<'a>> {
         let at = self.rest.iter().position(|(given, _)| *given == Some(name))?;
         self.rest.remove(at).map(|(_, term)| term)

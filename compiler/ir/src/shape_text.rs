@@ -1,13 +1,14 @@
 //! The text form of solid shapes: written and read back.
 
 use std::fmt::{self, Formatter};
+use std::sync::Arc;
 
-use arsc_geometry::{Hyperboloid, Paraboloid, Shape};
+use arsc_geometry::{DVec2, DVec3, Hyperboloid, Paraboloid, Polygon, Polyhedron, Prism, Shape};
 
-use crate::args::Args;
+use crate::args::{Args, float_list};
 use crate::print::Quoted;
-use crate::term::Fault;
-use crate::write::Call;
+use crate::term::{Fault, Term};
+use crate::write::{Call, Floats};
 
 /// Writes a shape's name and parameters; the call stays open for more.
 pub(crate) fn open_shape<'a, 'b>(f: &'a mut Formatter<'b>, shape: &Shape) -> Result<Call<'a, 'b>, fmt::Error> {
@@ -33,6 +34,48 @@ pub(crate) fn open_shape<'a, 'b>(f: &'a mut Formatter<'b>, shape: &Shape) -> Res
             .float("slope", slope)?
             .float("half_height", half_height)?
             .arg("two_sheets", two_sheets),
+        Shape::Prism(ref prism) => {
+            let call = Call::new(f, "prism")?.float("height", prism.height())?;
+            prism.polygon().rings().iter().try_fold(call, |call, ring| call.value(Floats(&flat2(ring))))
+        }
+        Shape::Polyhedron(ref polyhedron) => {
+            let coordinates: Vec<f64> = polyhedron.points().iter().flat_map(DVec3::to_array).collect();
+            Call::new(f, "polyhedron")?.value(Floats(&coordinates))
+        }
+    }
+}
+
+fn flat2(points: &[DVec2]) -> Vec<f64> {
+    points.iter().flat_map(DVec2::to_array).collect()
+}
+
+fn polyhedron(args: &mut Args) -> Result<Shape, Fault> {
+    let list = args.next()?;
+    let points = tuples::<3>(&list)?.into_iter().map(DVec3::from_array).collect();
+    let solid = Polyhedron::new(points).map_err(|error| (list.offset, error.to_string()))?;
+    Ok(Shape::Polyhedron(Arc::new(solid)))
+}
+
+fn prism(args: &mut Args) -> Result<Shape, Fault> {
+    let height = args.float("height")?;
+    let mut rings = Vec::new();
+    while let Some(list) = args.next_list() {
+        rings.push(tuples::<2>(&list)?.into_iter().map(DVec2::from_array).collect());
+    }
+    let fault = |message: String| (args.offset, message);
+    let polygon = Polygon::new(rings).map_err(|error| fault(error.to_string()))?;
+    let solid = Prism::new(polygon, height).ok_or_else(|| fault("a size is not positive and finite".to_owned()))?;
+    Ok(Shape::Prism(Arc::new(solid)))
+}
+
+/// A list of numbers in groups of N.
+fn tuples<const N: usize>(list: &Term) -> Result<Vec<[f64; N]>, Fault> {
+    let numbers = float_list(list)?;
+    let (tuples, rest) = numbers.as_chunks::<N>();
+    if rest.is_empty() {
+        Ok(tuples.to_vec())
+    } else {
+        Err((list.offset, format!("expected {N} numbers for each point")))
     }
 }
 
@@ -57,13 +100,14 @@ pub(crate) fn shape(args: &mut Args) -> Result<Option<Shape>, Fault> {
             half_height: args.float("half_height")?,
             two_sheets: args.boolean("two_sheets")?,
         }),
+        "prism" => prism(args)?,
+        "polyhedron" => polyhedron(args)?,
         _ => return Ok(None),
     }))
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use arsc_geometry::DVec3;
     use proptest::prelude::*;
 
     use super::*;
@@ -91,6 +135,16 @@ pub(crate) mod tests {
             (size(), size(), size(), any::<bool>()).prop_map(|(radius, slope, beyond, two_sheets)| {
                 let half_height = radius / slope + beyond;
                 Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets })
+            }),
+            (size(), size(), size(), any::<bool>()).prop_map(|(width, depth, height, holed)| {
+                let rectangle = |w: f64, d: f64| [(-w, -d), (-w, d), (w, d), (w, -d)].map(DVec2::from).to_vec();
+                let mut rings = vec![rectangle(width, depth)];
+                rings.extend(holed.then(|| rectangle(0.3 * width, 0.5 * depth)));
+                Shape::Prism(Arc::new(Prism::new(Polygon::new(rings).unwrap(), height).unwrap()))
+            }),
+            (size(), size(), size()).prop_map(|(x, y, z)| {
+                let points = vec![DVec3::ZERO, DVec3::X * x, DVec3::Y * (x + y), DVec3::Z * (x + z)];
+                Shape::Polyhedron(Arc::new(Polyhedron::new(points).unwrap()))
             }),
         ]
     }

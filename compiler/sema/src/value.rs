@@ -106,6 +106,13 @@ impl Value {
         }
     }
 
+    pub fn as_vec2(&self) -> DVec2 {
+        match self {
+            Value::Vec2(v) => *v,
+            other => bug("a vector", other),
+        }
+    }
+
     pub fn as_vec3(&self) -> DVec3 {
         match self {
             Value::Vec3(v) => *v,

@@ -5,6 +5,7 @@
 
 use glam::DVec3;
 
+use crate::area_table::AreaTable;
 use crate::{Placed, Shape, SurfacePoint, TriangleMesh, closed_mesh::fold, cone, cuboid, sphere, torus};
 
 /// A point chosen on a surface.
@@ -24,6 +25,8 @@ impl Shape {
             Shape::Box { .. } => 6,
             Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::Paraboloid(_) | Shape::Hyperboloid(_) => 3,
             Shape::Mesh(mesh) => mesh.mesh().triangles.len() as u32,
+            Shape::Polyhedron(polyhedron) => polyhedron.areas().len() as u32,
+            Shape::Prism(prism) => prism.areas().len() as u32,
         }
     }
 
@@ -40,19 +43,35 @@ impl Shape {
             Shape::Paraboloid(ref paraboloid) => paraboloid.areas()[face],
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.areas()[face],
             Shape::Mesh(ref mesh) => 0.5 * mesh.mesh().cross(face).length(),
+            Shape::Polyhedron(ref polyhedron) => polyhedron.areas().area(face),
+            Shape::Prism(ref prism) => prism.areas().area(face),
+        }
+    }
+
+    /// Areas of shapes that may have many faces.
+    fn area_table(&self) -> Option<&AreaTable> {
+        match self {
+            Shape::Prism(prism) => Some(prism.areas()),
+            Shape::Polyhedron(polyhedron) => Some(polyhedron.areas()),
+            _ => None,
         }
     }
 
     /// Surface area in object space; infinite for unbounded shapes.
     pub fn area(&self) -> f64 {
-        match self {
-            Shape::Mesh(mesh) => mesh.area(),
+        match (self, self.area_table()) {
+            (_, Some(table)) => table.total(),
+            (Shape::Mesh(mesh), None) => mesh.area(),
             _ => (0..self.face_count()).map(|face| self.face_area(face)).sum(),
         }
     }
 
     /// A face chosen in proportion to area, and what is left of `u`, uniform again.
     fn choose_face(&self, u: f64) -> (u32, f64) {
+        if let Some(table) = self.area_table() {
+            let (face, rest) = table.choose(u);
+            return (face as u32, rest);
+        }
         let last = self.face_count() - 1;
         let mut rest = u * self.area();
         let mut face = 0;
@@ -77,6 +96,8 @@ impl Shape {
             Shape::Paraboloid(ref paraboloid) => paraboloid.sample(face, u),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.sample(face, u),
             Shape::Mesh(ref mesh) => mesh.mesh().surface(face as usize, fold(u)).p,
+            Shape::Polyhedron(ref polyhedron) => polyhedron.sample(face, u),
+            Shape::Prism(ref prism) => prism.sample(face, u),
         })
     }
 
@@ -107,7 +128,7 @@ impl Placed {
         1.0 / (self.shape().area() * self.area_scale(world_normal))
     }
 
-    /// Surface area in the world, by stratified quadrature over object area (exact for similarities, boxes and meshes);
+    /// Surface area in the world, by stratified quadrature over object area (exact for similarities and flat faces);
     /// infinite for unbounded shapes.
     pub fn area(&self) -> f64 {
         const STRATA: usize = 48;
@@ -120,11 +141,13 @@ impl Placed {
         }
         let middle = |i: usize| (i as f64 + 0.5) / STRATA as f64;
         let mut sum = 0.0;
-        if let Shape::Box { min, max } = *self.shape() {
-            for (face, area) in cuboid::areas(min, max).into_iter().enumerate() {
-                sum += area * self.area_scale(self.world_normal(DVec3::AXES[face / 2]));
-            }
-            return sum;
+        if matches!(self.shape(), Shape::Box { .. } | Shape::Prism(_) | Shape::Polyhedron(_)) {
+            let scaled = |face: u32| {
+                // Any point will do: the faces are flat.
+                let n = self.shape().surface(DVec3::ZERO, face).n;
+                self.shape().face_area(face) * self.area_scale(self.world_normal(n))
+            };
+            return (0..self.shape().face_count()).map(scaled).sum();
         }
         for i in 0..STRATA {
             for j in 0..STRATA {

@@ -36,6 +36,8 @@ impl Placed {
         match self.shape() {
             Shape::Paraboloid(paraboloid) => return paraboloid.classify(&region),
             Shape::Hyperboloid(hyperboloid) => return hyperboloid.classify(&region),
+            Shape::Polyhedron(polyhedron) => return polyhedron.classify(&region),
+            Shape::Prism(prism) => return prism.classify(&region),
             _ => {}
         }
         if region.outside(self.shape()) {
@@ -99,7 +101,9 @@ impl Region {
             Shape::Torus { major, minor } => self.misses_torus(major, minor),
             Shape::HalfSpace => self.z_range().0 > 0.0,
             // They are classified by themselves.
-            Shape::Paraboloid(_) | Shape::Hyperboloid(_) | Shape::Mesh(_) => false,
+            Shape::Paraboloid(_) | Shape::Hyperboloid(_) | Shape::Polyhedron(_) | Shape::Prism(_) | Shape::Mesh(_) => {
+                false
+            }
         }
     }
 

@@ -9,6 +9,8 @@
 
 mod aabb;
 mod area;
+mod area_table;
+mod box_tree;
 mod classify;
 mod closed_mesh;
 mod cone;
@@ -16,9 +18,13 @@ mod crossings;
 mod cuboid;
 mod foot;
 mod half_space;
+mod hull;
 mod hyperboloid;
 mod paraboloid;
 mod placed;
+mod polygon;
+mod polyhedron;
+mod prism;
 mod quadratic;
 mod ray;
 mod region;
@@ -35,9 +41,13 @@ pub use closed_mesh::{ClosedMesh, ClosedMeshError, MeshRepairs, Projected, Proje
 pub use crossings::Crossings;
 pub use foot::Foot;
 pub use glam::{DAffine3, DMat3, DVec2, DVec3};
+pub use hull::{HullError, MOST_POINTS};
 pub use hyperboloid::Hyperboloid;
 pub use paraboloid::Paraboloid;
 pub use placed::{Direct, PlaceError, Placed, SurfacePoint, invert};
+pub use polygon::{Corner, MOST_CORNERS, Polygon, PolygonError};
+pub use polyhedron::Polyhedron;
+pub use prism::Prism;
 pub use ray::Ray;
 pub use shape::{LocalPoint, Shape};
 pub use span::Span;

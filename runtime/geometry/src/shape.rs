@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use crate::{Aabb, ClosedMesh, Crossings, Hyperboloid, Paraboloid, cone, cuboid, half_space, sphere, torus};
+use crate::{
+    Aabb, ClosedMesh, Crossings, Hyperboloid, Paraboloid, Polyhedron, Prism, cone, cuboid, half_space, sphere, torus,
+};
 
 /// A closed solid in object space. Sizes are positive and finite; the compiler guarantees it.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +47,10 @@ pub enum Shape {
     Hyperboloid(Hyperboloid),
     /// What a closed triangle mesh bounds.
     Mesh(Arc<ClosedMesh>),
+    /// The convex hull of points.
+    Polyhedron(Arc<Polyhedron>),
+    /// A polygon, extruded.
+    Prism(Arc<Prism>),
 }
 
 /// A point on a shape's surface with its frame, in object space.
@@ -75,6 +81,8 @@ impl Shape {
             Shape::HalfSpace | Shape::Mesh(_) => true,
             Shape::Paraboloid(ref paraboloid) => paraboloid.is_valid(),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.is_valid(),
+            Shape::Polyhedron(_) => true,
+            Shape::Prism(_) => true,
         }
     }
 
@@ -90,6 +98,13 @@ impl Shape {
             Shape::Paraboloid(Paraboloid { radius, height }) => &[*radius, *height],
             Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets }) => {
                 &[*radius, *slope, *half_height, f64::from(u8::from(*two_sheets))]
+            }
+            Shape::Polyhedron(polyhedron) => {
+                return polyhedron.points().iter().flat_map(DVec3::to_array).for_each(visit);
+            }
+            Shape::Prism(prism) => {
+                visit(prism.height());
+                return prism.polygon().rings().iter().flatten().flat_map(DVec2::to_array).for_each(visit);
             }
         };
         sizes.iter().for_each(|&x| visit(x));
@@ -111,6 +126,8 @@ impl Shape {
             Shape::Paraboloid(ref paraboloid) => paraboloid.contains(p),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.contains(p),
             Shape::Mesh(ref mesh) => mesh.contains(p),
+            Shape::Polyhedron(ref polyhedron) => polyhedron.contains(p),
+            Shape::Prism(ref prism) => prism.contains(p),
         }
     }
 
@@ -138,17 +155,14 @@ impl Shape {
             Shape::Paraboloid(ref paraboloid) => paraboloid.bounds(),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.bounds(),
             Shape::Mesh(ref mesh) => *mesh.bounds(),
+            Shape::Polyhedron(ref polyhedron) => polyhedron.bounds(),
+            Shape::Prism(ref prism) => prism.bounds(),
         }
     }
 
     /// The shape is finite.
     pub fn is_bounded(&self) -> bool {
         !matches!(self, Shape::InfiniteCylinder { .. } | Shape::HalfSpace)
-    }
-
-    /// The shape is convex.
-    pub fn is_convex(&self) -> bool {
-        !matches!(self, Shape::Torus { .. } | Shape::Hyperboloid(_) | Shape::Mesh(_))
     }
 
     /// Length that rounding errors of its own scale with.
@@ -163,6 +177,8 @@ impl Shape {
             Shape::Paraboloid(ref paraboloid) => paraboloid.radius.max(paraboloid.height),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.magnitude(),
             Shape::Mesh(ref mesh) => mesh.magnitude(),
+            Shape::Polyhedron(ref polyhedron) => largest(&polyhedron.bounds()),
+            Shape::Prism(ref prism) => largest(&prism.bounds()),
         }
     }
 
@@ -185,6 +201,8 @@ impl Shape {
             Shape::Paraboloid(ref paraboloid) => unit(dir, |d| paraboloid.crossings(origin, d)),
             Shape::Hyperboloid(ref hyperboloid) => unit(dir, |d| hyperboloid.crossings(origin, d)),
             Shape::Mesh(ref mesh) => mesh.crossings(origin, dir),
+            Shape::Polyhedron(ref polyhedron) => polyhedron.crossings(origin, dir),
+            Shape::Prism(ref prism) => prism.crossings(origin, dir),
         }
     }
 
@@ -200,6 +218,8 @@ impl Shape {
             Shape::HalfSpace => half_space::surface(p),
             Shape::Paraboloid(ref paraboloid) => paraboloid.surface(p, face),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.surface(p, face),
+            Shape::Polyhedron(ref polyhedron) => polyhedron.surface(p, face),
+            Shape::Prism(ref prism) => prism.surface(p, face),
             Shape::Mesh(ref mesh) => mesh.surface(p, face),
         }
     }
@@ -221,4 +241,8 @@ fn unit(dir: DVec3, solve: impl FnOnce(DVec3) -> Crossings) -> Crossings {
 
 fn upright(radius: f64, low: f64, high: f64) -> Aabb {
     Aabb::new(DVec3::new(-radius, -radius, low), DVec3::new(radius, radius, high))
+}
+
+fn largest(bounds: &Aabb) -> f64 {
+    bounds.min.abs().max(bounds.max.abs()).max_element()
 }

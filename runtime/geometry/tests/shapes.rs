@@ -1,8 +1,12 @@
 //! Every shape under random affine maps: crossings, bounds, classification, normals and area against membership.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
-use arsc_geometry::{Aabb, Classification, DAffine3, DMat3, DVec3, Hyperboloid, Paraboloid, Placed, Shape};
+use arsc_geometry::{
+    Aabb, Classification, DAffine3, DMat3, DVec2, DVec3, Hyperboloid, Paraboloid, Placed, Polygon, Polyhedron, Prism,
+    Shape,
+};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -29,11 +33,50 @@ fn shapes() -> Vec<Shape> {
         hyperboloid(0.01, 1.5, 0.5, false),
         hyperboloid(0.3, 0.9, 0.8, true),
         hyperboloid(0.02, 0.4, 0.9, true),
+        plate(),
+        star(7, 0.4),
+        star(1000, 0.8),
+        gem(),
+        ball_of_points(150),
     ]
 }
 
 fn hyperboloid(radius: f64, slope: f64, half_height: f64, two_sheets: bool) -> Shape {
     Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets })
+}
+
+/// An L with a square hole, the corners clockwise.
+fn plate() -> Shape {
+    let ring = |corners: &[(f64, f64)]| corners.iter().map(|&(x, y)| DVec2::new(x, y)).collect::<Vec<_>>();
+    let outline = ring(&[(-0.8, -0.8), (-0.8, 0.9), (0.1, 0.9), (0.1, 0.0), (0.7, 0.0), (0.7, -0.8)]);
+    let hole = ring(&[(-0.5, -0.5), (-0.1, -0.5), (-0.1, 0.4), (-0.5, 0.4)]);
+    Shape::Prism(Arc::new(Prism::new(Polygon::new(vec![outline, hole]).unwrap(), 0.6).unwrap()))
+}
+
+fn star(points: u32, inner: f64) -> Shape {
+    let corner = |i: u32| {
+        // Turned, so that no line in a coordinate plane meets a concave corner, where a normal leads into the solid.
+        let angle = 0.123 + f64::from(i) * TAU / f64::from(2 * points);
+        DVec2::from_angle(angle) * if i % 2 == 0 { 0.9 } else { inner }
+    };
+    let ring = (0..2 * points).map(corner).collect();
+    Shape::Prism(Arc::new(Prism::new(Polygon::new(vec![ring]).unwrap(), 0.5).unwrap()))
+}
+
+fn gem() -> Shape {
+    let points =
+        [(0.0, 0.0, 1.0), (0.7, 0.1, 0.2), (-0.2, 0.8, 0.1), (-0.6, -0.5, 0.3), (0.3, -0.7, -0.1), (0.1, 0.2, -0.9)];
+    Shape::Polyhedron(Arc::new(Polyhedron::new(points.map(|(x, y, z)| DVec3::new(x, y, z)).to_vec()).unwrap()))
+}
+
+/// Flattened, with the points of one side in a plane.
+fn ball_of_points(n: u32) -> Shape {
+    let point = |i: u32| {
+        let (z, angle) = (2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0, f64::from(i) * 2.399_963);
+        let ring = (1.0 - z * z).sqrt();
+        DVec3::new(ring * angle.cos(), ring * angle.sin() * 0.7, z.min(0.5))
+    };
+    Shape::Polyhedron(Arc::new(Polyhedron::new((0..n).map(point).collect()).unwrap()))
 }
 
 fn random_vector(rng: &mut Pcg64) -> DVec3 {

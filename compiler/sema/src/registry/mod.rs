@@ -10,6 +10,7 @@ mod lights;
 mod lists;
 mod materials;
 mod math;
+mod outlines;
 mod param;
 mod solids;
 mod spectra;

@@ -22,6 +22,7 @@ pub fn builtins() -> Vec<Builtin> {
     list.extend(quadrics());
     list.extend(flat());
     list.extend(files());
+    list.extend(super::outlines::builtins());
     list.extend(not_yet());
     list
 }
@@ -233,16 +234,9 @@ fn not_yet() -> Vec<Builtin> {
             .param(size("e1", "exponent from pole to pole").float(1.0))
             .param(size("e2", "exponent around the z axis").float(1.0))
             .later(Solid, "the superquadric"),
-        solid("prism", "A polygon in the plane z = 0, extruded to z = `height`.")
-            .param(Param::new("polygon", Type::list(Vec2), "corners, counter-clockwise"))
-            .param(size("height", "height").float(1.0))
-            .later(Solid, "the prism"),
         solid("lathe", "A profile (radius, z), turned about the z axis.")
             .param(Param::new("profile", Type::list(Vec2), "points (radius, z)"))
             .later(Solid, "the solid of revolution"),
-        solid("polyhedron", "The convex hull of points.")
-            .param(Param::new("points", Type::list(Point), "points"))
-            .later(Solid, "the convex polyhedron"),
         solid("height_field", "A solid between z = 0 and a height given by an image.")
             .param(Param::new("path", Str, "image file, relative to the script"))
             .param(Param::new("size", Vec3, "extent").vec3([1.0; 3]).positive())
