@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use arsc_accel::SurfaceShape;
+use arsc_render::polarisation::Unpolarised;
 use arsc_render::{Environment, Frame, SkySettings, warp};
 use arsc_spectral::{SampledWavelengths, sky::SOLAR_RADIUS};
 use glam::{DAffine3, DVec3};
@@ -25,7 +26,7 @@ fn irradiance(environment: &Environment, n: usize, pdf: f64, direction: impl Fn(
     let mut sum = 0.0;
     for i in 0..n * n {
         let wi = direction([i % n, i / n].map(|k| (k as f64 + 0.5) / n as f64));
-        let radiance: f64 = bands.iter().map(|w| f64::from(environment.radiance(wi, w).mean())).sum();
+        let radiance: f64 = bands.iter().map(|w| f64::from(environment.radiance::<Unpolarised>(wi, w).mean())).sum();
         sum += wi.z * radiance / bands.len() as f64;
     }
     sum / (n * n) as f64 / pdf

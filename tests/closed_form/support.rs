@@ -96,6 +96,18 @@ pub fn render(world: &World, camera: &Camera, samples: u32, max_depth: u32) -> S
     film.to_image()
 }
 
+/// Mean over pixels and bands of S0 to S3.
+pub fn stokes(world: &World, camera: &Camera, samples: u32, max_depth: u32) -> [f64; 4] {
+    let settings = PathTraceSettings { samples, max_depth, polarised: true, ..PathTraceSettings::default() };
+    let film = path_trace(world, camera, &settings, &());
+    assert_eq!(film.rejected(), 0, "samples that are not finite or negative");
+    let image = film.to_image();
+    let n = image.radiance.len() as f64;
+    let mean = |of: &dyn Fn(usize) -> f32| (0..image.radiance.len()).map(|i| f64::from(of(i))).sum::<f64>() / n;
+    let stokes = image.stokes.as_ref().expect("a polarised image");
+    [mean(&|i| image.radiance[i]), mean(&|i| stokes[i][0]), mean(&|i| stokes[i][1]), mean(&|i| stokes[i][2])]
+}
+
 /// Mean over pixels of every band.
 pub fn band_means(image: &SpectralImage) -> Vec<f64> {
     let bands = image.band_edges_nm.len() - 1;

@@ -57,6 +57,8 @@ pub enum Action {
         samples: u32,
         max_depth: u32,
         seed: u64,
+        /// Keep track of polarisation.
+        polarised: bool,
     },
     /// `image<spectral> → image<display>`
     ToneMap {

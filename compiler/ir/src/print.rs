@@ -276,10 +276,11 @@ impl Display for Text<'_, Action> {
             Action::Accelerate { strategy } => Call::new(f, "accelerate")?.arg("strategy", strategy.name())?.end(),
             Action::BoundingBoxes => f.write_str("bounding_boxes()"),
             Action::CollectLights => f.write_str("collect_lights()"),
-            Action::PathTrace { samples, max_depth, seed } => Call::new(f, "path_trace")?
+            Action::PathTrace { samples, max_depth, seed, polarised } => Call::new(f, "path_trace")?
                 .arg("samples", samples)?
                 .arg("max_depth", max_depth)?
                 .arg("seed", seed)?
+                .arg("polarised", polarised)?
                 .end(),
             Action::ToneMap { exposure: Exposure::Auto } => f.write_str("tone_map(exposure: auto)"),
             Action::ToneMap { exposure: Exposure::Ev(ev) } => Call::new(f, "tone_map")?.float("exposure", *ev)?.end(),

@@ -363,6 +363,7 @@ fn action(term: Term) -> Result<Action, Fault> {
             samples: args.integer("samples")?,
             max_depth: args.integer("max_depth")?,
             seed: args.integer("seed")?,
+            polarised: args.boolean("polarised")?,
         },
         "tone_map" => {
             let exposure = args.take("exposure")?;
@@ -570,7 +571,7 @@ mod tests {
                     filter: Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 },
                 });
                 let at = Span::new(SourceId(0), 3, 9);
-                b.action(Action::PathTrace { samples: numbers[2], max_depth: 3, seed: u64::MAX }, at);
+                b.action(Action::PathTrace { samples: numbers[2], max_depth: 3, seed: u64::MAX, polarised: true }, at);
                 b.action(Action::ToneMap { exposure: Exposure::Ev(tables.2) }, at);
                 b.action(Action::WritePng { path: "a \"quoted\\\" \u{1} path.png".to_owned() }, at);
                 b.finish(last)

@@ -33,13 +33,12 @@ pub fn measure(ir: &Ir, settings: &Settings, host: &dyn Host, seconds: f64) -> R
     let pixels = settings.pixels(camera.resolution())? as f64;
     let mut hits = 0;
     let rays = repeat(host, seconds, |_| hits = stage.pool.install(|| trace_pixels(&world, &camera)));
-    let depth = sequence::actions(ir, "").iter().find_map(|action| match action {
-        Action::PathTrace { max_depth, .. } => Some(*max_depth),
-        _ => None,
-    });
-    let base = PathTraceSettings::default();
-    let base =
-        PathTraceSettings { samples: 4, max_depth: settings.max_depth.or(depth).unwrap_or(base.max_depth), ..base };
+    let mut base = PathTraceSettings { samples: 4, ..PathTraceSettings::default() };
+    let first = sequence::actions(ir, "").into_iter().find(|action| matches!(action, Action::PathTrace { .. }));
+    if let Some(Action::PathTrace { max_depth, polarised, .. }) = first {
+        (base.max_depth, base.polarised) = (max_depth, polarised);
+    }
+    base.max_depth = settings.max_depth.unwrap_or(base.max_depth);
     let paths = repeat(host, seconds, |round| {
         stage.pool.install(|| path_trace(&world, &camera, &PathTraceSettings { seed: round, ..base.clone() }, &()));
     });

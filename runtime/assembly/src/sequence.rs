@@ -61,9 +61,9 @@ impl Item {
 
 /// What is done when a script says nothing: a render, written as EXR and PNG under the scene's name.
 pub fn default_actions(scene_name: &str) -> Vec<Action> {
-    let PathTraceSettings { samples, max_depth, seed, .. } = PathTraceSettings::default();
+    let PathTraceSettings { samples, max_depth, seed, polarised, .. } = PathTraceSettings::default();
     vec![
-        Action::PathTrace { samples, max_depth, seed },
+        Action::PathTrace { samples, max_depth, seed, polarised },
         Action::WriteExr { path: format!("{scene_name}.exr") },
         Action::ToneMap { exposure: arsc_ir::Exposure::Auto },
         Action::WritePng { path: format!("{scene_name}.png") },
@@ -119,7 +119,16 @@ impl Machine<'_> {
                 let strategy = self.scene("collect_lights")?;
                 self.stage.say_lights(strategy)?;
             }
-            Action::PathTrace { samples, max_depth, seed } => return self.path_trace(*samples, *max_depth, *seed),
+            Action::PathTrace { samples, max_depth, seed, polarised } => {
+                let asked = PathTraceSettings {
+                    samples: *samples,
+                    max_depth: *max_depth,
+                    seed: *seed,
+                    polarised: *polarised,
+                    ..PathTraceSettings::default()
+                };
+                return self.path_trace(asked);
+            }
             Action::WriteExr { path } => {
                 let bytes = arsc_image::encode_exr(&*self.spectral("write_exr")?)?;
                 self.write(path, &bytes)?;
@@ -147,15 +156,16 @@ impl Machine<'_> {
         Ok(true)
     }
 
-    fn path_trace(&mut self, samples: u32, max_depth: u32, seed: u64) -> Result<bool, AssemblyError> {
+    /// Renders as the script asks, but for what the run asks otherwise.
+    fn path_trace(&mut self, asked: PathTraceSettings) -> Result<bool, AssemblyError> {
         let strategy = self.scene("path_trace")?;
         let camera = self.stage.camera(strategy)?;
         let settings = PathTraceSettings {
-            samples: self.settings.samples.unwrap_or(samples),
-            max_depth: self.settings.max_depth.unwrap_or(max_depth),
-            seed: self.settings.seed.unwrap_or(seed),
+            samples: self.settings.samples.unwrap_or(asked.samples),
+            max_depth: self.settings.max_depth.unwrap_or(asked.max_depth),
+            seed: self.settings.seed.unwrap_or(asked.seed),
             crop: self.settings.crop,
-            ..PathTraceSettings::default()
+            ..asked
         };
         let world = self.stage.world(strategy)?;
         let progress = self.host.begin(u64::from(settings.samples) * self.settings.pixels(camera.resolution())?);

@@ -140,7 +140,7 @@ fn a_crop_gives_the_pixels_of_the_whole_picture() {
 
 #[test]
 fn stack_words_do_what_they_say() {
-    let trace = Action::PathTrace { samples: 1, max_depth: 3, seed: 9 };
+    let trace = Action::PathTrace { samples: 1, max_depth: 3, seed: 9, polarised: false };
     let exr = |name: &str| Action::WriteExr { path: name.into() };
     let tone_map = Action::ToneMap { exposure: Exposure::Ev(0.0) };
     let png = |name: &str| Action::WritePng { path: name.into() };

@@ -1,7 +1,7 @@
 //! Reading spectral OpenEXR files.
 //!
-//! Understands what [`crate::encode_exr`] writes and, of the layout by Fichet, Pacanowski and Wilkie, unpolarised
-//! emissive images (`S0.<λ>nm`) of other writers: without `arsc:bandEdges` the edges are the midpoints between
+//! Understands what [`crate::encode_exr`] writes and, of the layout by Fichet, Pacanowski and Wilkie, emissive images
+//! (`S0.<λ>nm`, and `S1` to `S3` where all three are there with the same wavelengths) of other writers: without `arsc:bandEdges` the edges are the midpoints between
 //! neighbouring wavelengths, as the layout prescribes; without `XYZ.*` the image is refused.
 
 use exr::prelude::*;
@@ -45,9 +45,8 @@ fn check_claimed_size(bytes: &[u8]) -> std::result::Result<(), Box<dyn std::erro
 fn from_layer(layer: &Layer<AnyChannels<FlatSamples>>) -> std::result::Result<SpectralImage, ImageError> {
     let (width, height) = (layer.size.0, layer.size.1);
     let named = |name: &str| layer.channel_data.list.iter().find(|channel| channel.name.eq(name));
-    let mut bands: Vec<(f64, &AnyChannel<FlatSamples>)> =
-        layer.channel_data.list.iter().filter_map(|c| Some((wavelength_nm(&c.name.to_string())?, c))).collect();
-    bands.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let bands_of = |parameter| bands_of(&layer.channel_data.list, parameter);
+    let bands = bands_of('0');
     if bands.is_empty() {
         return Err(ImageError::NotSpectral("no channel is named S0.<wavelength>nm".into()));
     }
@@ -60,6 +59,20 @@ fn from_layer(layer: &Layer<AnyChannels<FlatSamples>>) -> std::result::Result<Sp
             radiance[pixel * bands.len() + band] = value;
         }
     }
+    let polarisation = ['1', '2', '3'].map(bands_of);
+    let same = |more: &Vec<(f64, _)>| more.iter().map(|b| b.0).eq(bands.iter().map(|b| b.0));
+    let mut stokes = polarisation.iter().all(same).then(|| vec![[0.0; 3]; radiance.len()]);
+    for (parameter, (band, (_, channel))) in
+        polarisation.iter().enumerate().flat_map(|(i, p)| p.iter().enumerate().map(move |b| (i, b)))
+    {
+        for (stokes, value) in stokes
+            .iter_mut()
+            .flat_map(|s| s.iter_mut().skip(band).step_by(bands.len()))
+            .zip(channel.sample_data.values_as_f32())
+        {
+            stokes[parameter] = value;
+        }
+    }
     let xyz = x.sample_data.values_as_f32().zip(y.sample_data.values_as_f32()).zip(z.sample_data.values_as_f32());
     let centers: Vec<f64> = bands.iter().map(|band| band.0).collect();
     let (metadata, edges) = metadata(&layer.attributes);
@@ -68,6 +81,7 @@ fn from_layer(layer: &Layer<AnyChannels<FlatSamples>>) -> std::result::Result<Sp
         height,
         band_edges_nm: edges.filter(|e| e.len() == centers.len() + 1).unwrap_or_else(|| midpoints(&centers)),
         radiance,
+        stokes,
         xyz: xyz.map(|((x, y), z)| [x, y, z]).collect(),
         metadata,
     };
@@ -75,9 +89,17 @@ fn from_layer(layer: &Layer<AnyChannels<FlatSamples>>) -> std::result::Result<Sp
     Ok(image)
 }
 
-/// The wavelength of `S0.550,000000nm`.
-fn wavelength_nm(channel: &str) -> Option<f64> {
-    let number = channel.strip_prefix("S0.")?.strip_suffix("nm")?;
+/// The channels of a Stokes parameter by increasing wavelength, nm.
+fn bands_of(channels: &[AnyChannel<FlatSamples>], parameter: char) -> Vec<(f64, &AnyChannel<FlatSamples>)> {
+    let mut bands: Vec<_> =
+        channels.iter().filter_map(|c| Some((wavelength_nm(&c.name.to_string(), parameter)?, c))).collect();
+    bands.sort_by(|a, b| a.0.total_cmp(&b.0));
+    bands
+}
+
+/// The wavelength of `S0.550,000000nm`, for the Stokes parameter 0.
+fn wavelength_nm(channel: &str, parameter: char) -> Option<f64> {
+    let number = channel.strip_prefix('S')?.strip_prefix(parameter)?.strip_prefix('.')?.strip_suffix("nm")?;
     let value: f64 = number.replace(',', ".").parse().ok()?;
     (value.is_finite() && value > 0.0).then_some(value)
 }
@@ -125,6 +147,7 @@ mod tests {
             height,
             band_edges_nm: (0..=bands).map(|i| 360.0 + 10.0 * i as f64).collect(),
             radiance: (0..width * height * bands).map(|i| (i as f32 * 0.37).sin().abs() * 1e-3).collect(),
+            stokes: None,
             xyz: (0..width * height).map(|i| [i as f32, i as f32 * 0.5, 1.0]).collect(),
             metadata: vec![
                 ("command".into(), "arsc render Würfel.arsl".into()),
@@ -142,6 +165,16 @@ mod tests {
             assert_eq!(bytes, encode_exr(&image).unwrap(), "same image, same bytes");
         }
         assert_eq!(decode_exr(&bytes).unwrap(), image);
+    }
+
+    #[test]
+    fn polarised_images_keep_their_stokes_parameters() {
+        let mut image = image();
+        let of = |i: usize| [i as f32, -(i as f32), 0.5 * i as f32];
+        image.stokes = Some((0..image.radiance.len()).map(of).collect());
+        assert_eq!(decode_exr(&encode_exr(&image).unwrap()).unwrap(), image);
+        image.stokes.as_mut().unwrap().pop();
+        assert!(matches!(encode_exr(&image), Err(ImageError::Shape { what: "stokes", .. })));
     }
 
     #[test]

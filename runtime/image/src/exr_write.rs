@@ -1,7 +1,8 @@
 //! Spectral OpenEXR files in the layout of Fichet, Pacanowski and Wilkie, "An OpenEXR Layout for Spectral Images",
 //! JCGT 10(3), 2021.
 //!
-//! Channels, all 32 bit: `S0.<centre>nm` per band with a decimal comma and six decimals; `R`, `G`, `B`, linear sRGB in
+//! Channels, all 32 bit: `S0.<centre>nm` per band with a decimal comma and six decimals, for polarised images `S1`, `S2` and
+//! `S3` likewise, with the attribute `polarisationHandedness` "right"; `R`, `G`, `B`, linear sRGB in
 //! which the relative luminance 1 is [`UNIT_LUMINANCE`] cd m^-2 (also the attribute `whiteLuminance`); `XYZ.X`,
 //! `XYZ.Y`, `XYZ.Z` with Y in cd m^-2. Attributes: `spectralLayoutVersion` "1.0", `emissiveUnits` "W.m^-2.sr^-1" (the
 //! one value that the layout's readers know; the samples are densities, W m^-2 sr^-1 nm^-1, which
@@ -35,9 +36,15 @@ fn channels(image: &SpectralImage) -> Vec<AnyChannel<FlatSamples>> {
     let mut channels: Vec<_> = (0..bands)
         .map(|band| {
             let samples = image.radiance.iter().skip(band).step_by(bands).copied().collect();
-            channel(&band_name(image.band_center_nm(band)), samples)
+            channel(&band_name(0, image.band_center_nm(band)), samples)
         })
         .collect();
+    for parameter in 0..image.stokes.as_ref().map_or(0, |_| 3) {
+        for band in 0..bands {
+            let samples = image.stokes.iter().flatten().skip(band).step_by(bands).map(|s| s[parameter]).collect();
+            channels.push(channel(&band_name(parameter + 1, image.band_center_nm(band)), samples));
+        }
+    }
     let rgb_from_xyz: DMat3 = rgb_from_xyz() * UNIT_LUMINANCE.recip();
     let rgb: Vec<[f32; 3]> =
         image.xyz.iter().map(|&xyz| (rgb_from_xyz * Vec3::from_array(xyz).as_dvec3()).as_vec3().to_array()).collect();
@@ -51,8 +58,8 @@ fn channels(image: &SpectralImage) -> Vec<AnyChannel<FlatSamples>> {
 }
 
 /// `S0.550,000000nm`
-fn band_name(center_nm: f64) -> String {
-    format!("S0.{}nm", format!("{center_nm:.6}").replace('.', ","))
+fn band_name(parameter: usize, center_nm: f64) -> String {
+    format!("S{parameter}.{}nm", format!("{center_nm:.6}").replace('.', ","))
 }
 
 fn attributes(image: &SpectralImage) -> LayerAttributes {
@@ -62,6 +69,9 @@ fn attributes(image: &SpectralImage) -> LayerAttributes {
     };
     text("spectralLayoutVersion", "1.0");
     text("emissiveUnits", "W.m^-2.sr^-1");
+    if image.stokes.is_some() {
+        text("polarisationHandedness", "right");
+    }
     text("arsc:radianceUnits", "W.m^-2.sr^-1.nm^-1");
     let edges: Vec<String> = image.band_edges_nm.iter().map(f64::to_string).collect();
     text("arsc:bandEdges", &edges.join(";"));
@@ -82,7 +92,7 @@ mod tests {
 
     #[test]
     fn band_names_have_a_comma_and_six_decimals() {
-        assert_eq!(band_name(550.0), "S0.550,000000nm");
-        assert_eq!(band_name(365.25), "S0.365,250000nm");
+        assert_eq!(band_name(0, 550.0), "S0.550,000000nm");
+        assert_eq!(band_name(3, 365.25), "S3.365,250000nm");
     }
 }

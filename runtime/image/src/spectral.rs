@@ -11,6 +11,9 @@ pub struct SpectralImage {
     pub band_edges_nm: Vec<f64>,
     /// `[y][x][band]`, mean spectral radiance of the band, W m^-2 sr^-1 nm^-1.
     pub radiance: Vec<f32>,
+    /// `[y][x][band][S1 S2 S3]`, the Stokes parameters beside the radiance S0, in its unit; x of the reference frame points
+    /// to the right in the picture, y up, S3 > 0 is right-handed. `None` for unpolarised images.
+    pub stokes: Option<Vec<[f32; 3]>>,
     /// `[y][x][XYZ]`, CIE 1931 2 degree, with k = 683 lm/W: Y is luminance in cd m^-2.
     pub xyz: Vec<[f32; 3]>,
     /// Free text that travels with the picture: version, scene hash, seed, samples, command line, timings.
@@ -37,6 +40,9 @@ impl SpectralImage {
             return Err(ImageError::NotSpectral("band edges do not increase".into()));
         }
         check("radiance", self.radiance.len(), pixels.saturating_mul(self.bands()))?;
+        if let Some(stokes) = &self.stokes {
+            check("stokes", stokes.len(), self.radiance.len())?;
+        }
         check("xyz", self.xyz.len(), pixels)
     }
 }

@@ -91,6 +91,7 @@ mod tests {
             height: 1,
             band_edges_nm: vec![360.0, 830.0],
             radiance: vec![0.0; luminances.len()],
+            stokes: None,
             xyz: luminances.iter().map(pixel).collect(),
             metadata: vec![],
         }

@@ -52,6 +52,12 @@ impl Camera {
         let y = pixel.y - 0.5 * f64::from(self.resolution[1]);
         Ray::new(self.eye, (self.forward + self.pixel_right * x + self.pixel_down * y).normalize())
     }
+
+    /// The x axis of a ray's reference frame: across the ray and the picture's vertical, to the right.
+    #[inline]
+    pub fn horizontal(&self, ray: &Ray) -> DVec3 {
+        self.pixel_down.cross(ray.dir).normalize()
+    }
 }
 
 #[cfg(test)]
@@ -70,6 +76,16 @@ mod tests {
         assert!((c.ray(DVec2::new(200.0, 100.0)).dir - DVec3::Y).length() < 1e-12);
         assert!(c.ray(DVec2::new(399.0, 100.0)).dir.x > 0.0);
         assert!(c.ray(DVec2::new(200.0, 199.0)).dir.z < 0.0);
+    }
+
+    #[test]
+    fn reference_frames_are_level_and_point_to_the_right() {
+        let c = camera([400, 200]);
+        for pixel in [DVec2::new(200.0, 100.0), DVec2::new(399.0, 3.0), DVec2::new(10.0, 180.0)] {
+            let ray = c.ray(pixel);
+            let x = c.horizontal(&ray);
+            assert!(x.z.abs() < 1e-12 && x.dot(ray.dir).abs() < 1e-12 && x.x > 0.5 && (x.length() - 1.0).abs() < 1e-12);
+        }
     }
 
     #[test]

@@ -6,6 +6,7 @@
 mod area_lights;
 mod bsdfs;
 mod lights;
+mod mueller;
 
 use std::f64::consts::TAU;
 

@@ -1,6 +1,9 @@
 //! Emission of surfaces.
 
 use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
+use glam::DVec3;
+
+use crate::polarisation::{Polarisation, Stokes};
 
 /// Lambertian emission: the same radiance in all directions of the side of the geometric normal, or of both.
 #[derive(Clone, Debug)]
@@ -16,14 +19,15 @@ impl AreaEmitter {
         AreaEmitter { radiance: DenseSpectrum::new(radiance).clamped(0.0, f32::MAX), two_sided }
     }
 
-    /// Radiance towards a direction with the given cosine to the geometric normal.
+    /// Radiance towards the direction `wo` from a surface with the geometric normal `ng`.
     #[inline]
-    pub fn radiance(&self, cos: f64, wavelengths: &SampledWavelengths) -> SampledSpectrum {
-        if cos > 0.0 || (self.two_sided && cos < 0.0) {
+    pub fn radiance<P: Polarisation>(&self, wo: DVec3, ng: DVec3, wavelengths: &SampledWavelengths) -> P::Stokes {
+        let cos = wo.dot(ng);
+        P::Stokes::unpolarised(if cos > 0.0 || (self.two_sided && cos < 0.0) {
             self.radiance.sample(wavelengths)
         } else {
             SampledSpectrum::ZERO
-        }
+        })
     }
 
     pub fn two_sided(&self) -> bool {

@@ -5,12 +5,12 @@
 //! band that it falls into. Radiance of a band is the ratio of its two sums (so the random number of samples per band
 //! cancels), XYZ is sum over count. Sums of films of disjoint samples add: films merge.
 //! Pixels are stored tile by tile, so that threads own what they write. Values that are not finite or negative are
-//! counted and left out.
+//! counted and left out. Polarised films keep sums of the Stokes parameters S1 to S3 per band as well.
 
 use arsc_image::SpectralImage;
-use arsc_spectral::{
-    LAMBDA_MAX_NM, LAMBDA_MIN_NM, LUMINOUS_EFFICACY, SampledSpectrum, SampledWavelengths, matching_functions,
-};
+use arsc_spectral::{LAMBDA_MAX_NM, LAMBDA_MIN_NM, LUMINOUS_EFFICACY, SampledWavelengths, matching_functions};
+
+use crate::polarisation::Stokes;
 
 /// Side of a tile in pixels.
 pub const TILE: u32 = 16;
@@ -69,13 +69,15 @@ pub struct Tile {
     band_index: BandIndex,
     /// `[pixel][band]`: weighted estimate, weight.
     sums: Vec<[f32; 2]>,
+    /// `[pixel][band]`: weighted S1, S2, S3; empty for films without polarisation.
+    stokes: Vec<[f32; 3]>,
     xyz: Vec<[f64; 3]>,
     samples: Vec<u32>,
     rejected: u64,
 }
 
 impl Tile {
-    fn new(x0: u32, y0: u32, width: u32, height: u32, bands: Bands) -> Tile {
+    fn new([x0, y0, width, height]: [u32; 4], bands: Bands, polarised: bool) -> Tile {
         let pixels = (width * height) as usize;
         Tile {
             x0,
@@ -84,6 +86,7 @@ impl Tile {
             height,
             band_index: BandIndex::new(&bands),
             sums: vec![[0.0; 2]; pixels * bands.count],
+            stokes: vec![[0.0; 3]; if polarised { pixels * bands.count } else { 0 }],
             xyz: vec![[0.0; 3]; pixels],
             samples: vec![0; pixels],
             rejected: 0,
@@ -92,7 +95,9 @@ impl Tile {
 
     /// Adds a path's radiance to a pixel given by its position in the tile. `weight` is the filter's, with mean 1.
     #[inline]
-    pub fn add(&mut self, x: u32, y: u32, wavelengths: &SampledWavelengths, radiance: SampledSpectrum, weight: f64) {
+    pub fn add<S: Stokes>(&mut self, x: u32, y: u32, wavelengths: &SampledWavelengths, light: &S, weight: f64) {
+        let radiance = light.intensity();
+        let polarisation = light.polarisation().filter(|_| !self.stokes.is_empty() && radiance.is_valid());
         let radiance = if radiance.is_valid() {
             radiance
         } else {
@@ -104,6 +109,7 @@ impl Tile {
         let inverse_pdf = 1.0 / wavelengths.pdf;
         let estimates = (radiance.0 * inverse_pdf * weight as f32).to_array();
         let (lambda, knots) = (wavelengths.lambda_nm.to_array(), wavelengths.knots());
+        let inverse_pdf_lanes = inverse_pdf;
         let inverse_pdf = inverse_pdf.to_array();
         let matching = matching_functions();
         for i in 0..4 {
@@ -118,6 +124,27 @@ impl Tile {
             *total = [total[0] + x * estimate, total[1] + y * estimate, total[2] + z * estimate];
         }
         self.samples[pixel] += 1;
+        if let Some(polarisation) = polarisation {
+            let [s1, s2, s3] = polarisation.map(|s| (s.0 * inverse_pdf_lanes * weight as f32).to_array());
+            for i in 0..4 {
+                if let Some(band) = self.band_index.of(lambda[i]) {
+                    let sum = &mut self.stokes[row + band];
+                    *sum = [sum[0] + s1[i], sum[1] + s2[i], sum[2] + s3[i]];
+                }
+            }
+        }
+    }
+
+    /// Mean Stokes parameters of a pixel's bands.
+    fn fill_stokes(&self, pixel: usize, bands: &mut [[f32; 3]]) {
+        let n = bands.len();
+        let row = pixel * n..(pixel + 1) * n;
+        let mut mean = vec![0.0; n];
+        for parameter in 0..3 {
+            let sums = row.clone().map(|i| [self.stokes[i][parameter], self.sums[i][1]]);
+            fill_bands(&sums.collect::<Vec<_>>(), &mut mean);
+            bands.iter_mut().zip(&mean).for_each(|(band, mean)| band[parameter] = *mean);
+        }
     }
 
     /// Samples of the pixel with the most.
@@ -131,6 +158,7 @@ impl Tile {
 pub struct Film {
     resolution: [u32; 2],
     bands: Bands,
+    polarised: bool,
     pub(crate) tiles: Vec<Tile>,
 }
 
@@ -140,7 +168,7 @@ pub struct FilmMismatch;
 
 impl std::fmt::Display for FilmMismatch {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("films of different size, crop or bands cannot be merged")
+        f.write_str("films of different size, crop, bands or polarisation cannot be merged")
     }
 }
 
@@ -148,16 +176,16 @@ impl std::error::Error for FilmMismatch {}
 
 impl Film {
     /// An empty film of `resolution` pixels; only those of `crop` (x0, y0, x1, y1, end exclusive) take memory.
-    pub fn new(resolution: [u32; 2], crop: Option<[u32; 4]>, bands: Bands) -> Film {
+    pub fn new(resolution: [u32; 2], crop: Option<[u32; 4]>, bands: Bands, polarised: bool) -> Film {
         let [x0, y0, x1, y1] = crop.unwrap_or([0, 0, resolution[0], resolution[1]]);
         let (x1, y1) = (x1.min(resolution[0]), y1.min(resolution[1]));
         let columns = (x0..x1).step_by(TILE as usize);
         let tiles = (y0..y1)
             .step_by(TILE as usize)
             .flat_map(|y| columns.clone().map(move |x| (x, y)))
-            .map(|(x, y)| Tile::new(x, y, TILE.min(x1 - x), TILE.min(y1 - y), bands))
+            .map(|(x, y)| Tile::new([x, y, TILE.min(x1 - x), TILE.min(y1 - y)], bands, polarised))
             .collect();
-        Film { resolution, bands, tiles }
+        Film { resolution, bands, polarised, tiles }
     }
 
     pub fn resolution(&self) -> [u32; 2] {
@@ -165,25 +193,30 @@ impl Film {
     }
 
     /// Bytes that a film of these pixels and its picture take, so that a caller can refuse what does not fit.
-    pub fn bytes(resolution: [u32; 2], crop: Option<[u32; 4]>, bands: &Bands) -> u64 {
+    pub fn bytes(resolution: [u32; 2], crop: Option<[u32; 4]>, bands: &Bands, polarised: bool) -> u64 {
         let area = |width: u32, height: u32| u64::from(width) * u64::from(height);
         let [x0, y0, x1, y1] = crop.unwrap_or([0, 0, resolution[0], resolution[1]]);
         let covered = area(x1.min(resolution[0]).saturating_sub(x0), y1.min(resolution[1]).saturating_sub(y0));
         let n = bands.count as u64;
-        let (sums, picture) = (n * 8 + 24 + 4, n * 4 + 12);
+        let stokes = if polarised { n * 12 } else { 0 };
+        let (sums, picture) = (n * 8 + 24 + 4 + stokes, n * 4 + 12 + stokes);
         covered.saturating_mul(sums).saturating_add(area(resolution[0], resolution[1]).saturating_mul(picture))
     }
 
     /// Adds the sums of a film of other samples.
     pub fn merge(&mut self, other: &Film) -> Result<(), FilmMismatch> {
         let place = |t: &Tile| (t.x0, t.y0, t.width, t.height);
-        let same = self.resolution == other.resolution && self.bands == other.bands;
+        let kind = |film: &Film| (film.resolution, film.polarised);
+        let same = kind(self) == kind(other) && self.bands == other.bands;
         if !same || !self.tiles.iter().map(place).eq(other.tiles.iter().map(place)) {
             return Err(FilmMismatch);
         }
         for (tile, more) in self.tiles.iter_mut().zip(&other.tiles) {
             for (sum, more) in tile.sums.iter_mut().zip(&more.sums) {
                 *sum = [sum[0] + more[0], sum[1] + more[1]];
+            }
+            for (sum, more) in tile.stokes.iter_mut().zip(&more.stokes) {
+                *sum = [sum[0] + more[0], sum[1] + more[1], sum[2] + more[2]];
             }
             for (xyz, more) in tile.xyz.iter_mut().zip(&more.xyz) {
                 *xyz = [xyz[0] + more[0], xyz[1] + more[1], xyz[2] + more[2]];
@@ -218,22 +251,29 @@ impl Film {
         let (width, height) = (self.resolution[0] as usize, self.resolution[1] as usize);
         let n = self.bands.count;
         let mut radiance = vec![0.0; width * height * n];
+        let mut stokes = if self.polarised { vec![[0.0; 3]; width * height * n] } else { Vec::new() };
         let mut xyz = vec![[0.0; 3]; width * height];
         for tile in &self.tiles {
             for pixel in 0..tile.samples.len() {
                 let (x, y) = (pixel % tile.width as usize, pixel / tile.width as usize);
                 let at = (tile.y0 as usize + y) * width + tile.x0 as usize + x;
                 fill_bands(&tile.sums[pixel * n..(pixel + 1) * n], &mut radiance[at * n..(at + 1) * n]);
+                if self.polarised {
+                    tile.fill_stokes(pixel, &mut stokes[at * n..(at + 1) * n]);
+                }
                 let k = 0.25 * LUMINOUS_EFFICACY / f64::from(tile.samples[pixel].max(1));
                 xyz[at] = tile.xyz[pixel].map(|sum| (sum * k) as f32);
             }
         }
-        SpectralImage { width, height, band_edges_nm: self.bands.edges_nm(), radiance, xyz, metadata: Vec::new() }
+        let stokes = self.polarised.then_some(stokes);
+        let band_edges_nm = self.bands.edges_nm();
+        SpectralImage { width, height, band_edges_nm, radiance, stokes, xyz, metadata: Vec::new() }
     }
 }
 
-/// Ratios of the sums; empty bands between filled ones are interpolated, at the ends repeated.
+/// Ratios of the sums; empty bands between filled ones are interpolated, at the ends repeated. All zero without any.
 fn fill_bands(sums: &[[f32; 2]], radiance: &mut [f32]) {
+    radiance.fill(0.0);
     let value = |i: usize| sums[i][0] / sums[i][1];
     let mut last: Option<usize> = None;
     for i in (0..sums.len()).filter(|i| sums[*i][1] > 0.0) {
@@ -255,14 +295,16 @@ fn fill_bands(sums: &[[f32; 2]], radiance: &mut [f32]) {
 
 #[cfg(test)]
 mod tests {
+    use arsc_spectral::SampledSpectrum;
+
     use super::*;
 
     fn constant_film(resolution: [u32; 2], samples: u32, value: f32) -> Film {
-        let mut film = Film::new(resolution, None, Bands::default());
+        let mut film = Film::new(resolution, None, Bands::default(), false);
         for tile in &mut film.tiles {
             for i in 0..samples {
                 let wavelengths = SampledWavelengths::sample((f64::from(i) + 0.5) / f64::from(samples) * 0.25);
-                tile.add(0, 0, &wavelengths, SampledSpectrum::splat(value), 1.0);
+                tile.add(0, 0, &wavelengths, &SampledSpectrum::splat(value), 1.0);
             }
         }
         film
@@ -293,9 +335,9 @@ mod tests {
 
     #[test]
     fn nonsense_is_counted_and_left_out() {
-        let mut film = Film::new([1, 1], None, Bands::default());
+        let mut film = Film::new([1, 1], None, Bands::default(), false);
         for bad in [f32::NAN, f32::INFINITY, -1.0] {
-            film.tiles[0].add(0, 0, &SampledWavelengths::sample(0.3), SampledSpectrum::splat(bad), 1.0);
+            film.tiles[0].add(0, 0, &SampledWavelengths::sample(0.3), &SampledSpectrum::splat(bad), 1.0);
         }
         assert_eq!(film.rejected(), 3);
         assert!(film.to_image().radiance.iter().all(|r| *r == 0.0));
@@ -304,11 +346,11 @@ mod tests {
 
     #[test]
     fn crops_cover_their_pixels_and_no_others() {
-        let mut film = Film::new([40, 30], Some([5, 7, 39, 25]), Bands::default());
+        let mut film = Film::new([40, 30], Some([5, 7, 39, 25]), Bands::default(), false);
         for tile in &mut film.tiles {
             let (width, height) = (tile.width, tile.height);
             for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-                tile.add(x, y, &SampledWavelengths::sample(0.1), SampledSpectrum::ONE, 1.0);
+                tile.add(x, y, &SampledWavelengths::sample(0.1), &SampledSpectrum::ONE, 1.0);
             }
         }
         let image = film.to_image();
@@ -317,8 +359,8 @@ mod tests {
             assert_eq!(pixel[20] > 0.0, inside, "pixel {i}");
         }
         assert_eq!(film.samples_per_pixel(), (1, 1));
-        assert_eq!(Film::new([4, 4], Some([9, 9, 2, 2]), Bands::default()).paths(), 0);
-        assert_eq!(Film::bytes([40, 30], Some([5, 7, 39, 25]), &Bands::default()), 34 * 18 * 404 + 1200 * 200);
-        assert_eq!(Film::bytes([4, 4], Some([9, 9, 2, 2]), &Bands::default()), 16 * 200);
+        assert_eq!(Film::new([4, 4], Some([9, 9, 2, 2]), Bands::default(), false).paths(), 0);
+        assert_eq!(Film::bytes([40, 30], Some([5, 7, 39, 25]), &Bands::default(), false), 34 * 18 * 404 + 1200 * 200);
+        assert_eq!(Film::bytes([4, 4], Some([9, 9, 2, 2]), &Bands::default(), false), 16 * 200);
     }
 }

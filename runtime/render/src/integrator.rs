@@ -7,6 +7,9 @@
 //! ratio. All densities except the choice at a dielectric are the same at the four wavelengths, therefore the two
 //! heuristics multiply. Russian roulette ends dim paths from the [`ROULETTE_DEPTH`]th event on, on the brightest
 //! wavelength, with the change of radiance by refraction taken out.
+//!
+//! Written once for light with and without polarisation. `beta` is then a Mueller matrix from the current ray to the
+//! camera's; all decisions look at its first element, so that both kinds of light follow the same paths.
 
 use arsc_accel::{Hit, Ray};
 use arsc_spectral::{SampledSpectrum, SampledWavelengths};
@@ -15,6 +18,7 @@ use glam::DVec3;
 use crate::bsdf::Bsdf;
 use crate::frame::Frame;
 use crate::light::Light;
+use crate::polarisation::{Mueller, Polarisation, Stokes};
 use crate::sampler::Sampler;
 use crate::world::{LightSource, World};
 
@@ -32,10 +36,10 @@ const BSDF_DIRECTION: u32 = 2;
 const BSDF_LOBE: u32 = 3;
 
 /// A path under construction.
-struct Path {
+struct Path<P: Polarisation> {
     ray: Ray,
-    /// Throughput at the hero's pdf.
-    beta: SampledSpectrum,
+    /// Throughput at the hero's pdf, from light along the ray's reverse to the camera.
+    beta: P::Mueller,
     path_pdf: SampledSpectrum,
     /// Density per steradian of the last direction; `None` after the camera and specular lobes, which light sampling
     /// does not compete with.
@@ -44,11 +48,11 @@ struct Path {
     eta2: f64,
 }
 
-impl Path {
-    /// Throughput under the balance heuristic over wavelengths.
+impl<P: Polarisation> Path<P> {
+    /// What reaches the camera of light that arrives at the ray's origin, under the balance heuristic over wavelengths.
     #[inline]
-    fn throughput(&self) -> SampledSpectrum {
-        self.beta * (1.0 / self.path_pdf.mean())
+    fn carry(&self, light: &P::Stokes) -> P::Stokes {
+        self.beta.apply(light) * (1.0 / self.path_pdf.mean())
     }
 
     /// Power heuristic for light found by a scattered ray, `light_pdf` being the density of light sampling.
@@ -68,28 +72,29 @@ fn power_heuristic(pdf: f64, other: f64) -> f32 {
 }
 
 /// Radiance that arrives at the origin of `ray` from its direction, at the given wavelengths, after at most
-/// `max_depth` scattering events.
-pub fn incident_radiance(
+/// `max_depth` scattering events. `horizontal`, a unit vector across the ray, is the x axis of its reference frame.
+pub fn incident_radiance<P: Polarisation>(
     world: &World,
     ray: Ray,
+    horizontal: DVec3,
     wavelengths: &SampledWavelengths,
     sampler: &Sampler,
     max_depth: u32,
-) -> SampledSpectrum {
-    let one = SampledSpectrum::ONE;
-    let mut path = Path { ray, beta: one, path_pdf: one, direction_pdf: None, eta2: 1.0 };
-    let mut radiance = SampledSpectrum::ZERO;
+) -> P::Stokes {
+    let beta = P::Mueller::identity(horizontal, -ray.dir);
+    let mut path = Path::<P> { ray, beta, path_pdf: SampledSpectrum::ONE, direction_pdf: None, eta2: 1.0 };
+    let mut radiance = P::Stokes::unpolarised(SampledSpectrum::ZERO);
     for depth in 0..=max_depth {
         let Some(hit) = world.geometry.intersect(&path.ray) else {
-            radiance += path.throughput() * escaped_radiance(world, &path, wavelengths);
+            radiance += escaped_radiance(world, &path, wavelengths);
             break;
         };
         let wo = -path.ray.dir;
         if let Some(emitter) = &world.material(&hit).emitter {
-            let emitted = emitter.radiance(wo.dot(hit.ng), wavelengths);
-            if !emitted.is_black() {
+            let emitted = emitter.radiance::<P>(wo, hit.ng, wavelengths);
+            if !emitted.intensity().is_black() {
                 let weight = path.scattered_weight(part_pdf(world, &hit, &path));
-                radiance += path.throughput() * emitted * weight;
+                radiance += path.carry(&emitted) * weight;
             }
         }
         if depth == max_depth {
@@ -99,8 +104,10 @@ pub fn incident_radiance(
         let event = Event::new(&hit, wo, &world.material(&hit).bsdf);
         if !event.bsdf.is_specular() {
             let choice = sampler.single(pair + LIGHT_CHOICE);
-            let direct = event.direct_light(world, choice, sampler.pair(pair + LIGHT_POINT), wavelengths);
-            radiance += path.throughput() * direct;
+            let u = sampler.pair(pair + LIGHT_POINT);
+            if let Some(direct) = event.sampled_light::<P>(world, choice, u, wavelengths) {
+                radiance += path.carry(&direct);
+            }
         }
         let u_lobe = sampler.pair(pair + BSDF_LOBE);
         let direction = sampler.pair(pair + BSDF_DIRECTION);
@@ -114,22 +121,22 @@ pub fn incident_radiance(
     radiance
 }
 
-/// From all environments, weighted against light sampling.
-fn escaped_radiance(world: &World, path: &Path, wavelengths: &SampledWavelengths) -> SampledSpectrum {
-    let mut radiance = SampledSpectrum::ZERO;
+/// What reaches the camera from all environments, weighted against light sampling.
+fn escaped_radiance<P: Polarisation>(world: &World, path: &Path<P>, wavelengths: &SampledWavelengths) -> P::Stokes {
+    let mut radiance = P::Stokes::unpolarised(SampledSpectrum::ZERO);
     for (environment, probability) in world.environments() {
         let wi = path.ray.dir;
         let weight = match path.direction_pdf {
             None => 1.0,
             Some(pdf) => power_heuristic(pdf, probability * environment.pdf(wi)),
         };
-        radiance += environment.radiance(wi, wavelengths) * weight;
+        radiance += path.carry(&environment.radiance::<P>(wi, wavelengths)) * weight;
     }
     radiance
 }
 
 /// Density per steradian with which light sampling at the last event would have chosen this hit.
-fn part_pdf(world: &World, hit: &Hit, path: &Path) -> f64 {
+fn part_pdf<P: Polarisation>(world: &World, hit: &Hit, path: &Path<P>) -> f64 {
     let probability = world.part_probability(hit);
     if probability == 0.0 || path.direction_pdf.is_none() {
         return 0.0;
@@ -138,12 +145,13 @@ fn part_pdf(world: &World, hit: &Hit, path: &Path) -> f64 {
     probability * world.geometry.pdf_area(hit) * hit.t * hit.t / cos
 }
 
-fn survives_roulette(path: &mut Path, u: f64) -> bool {
-    let survival = (path.throughput().max() * path.eta2 as f32).min(ROULETTE_MAX);
+fn survives_roulette<P: Polarisation>(path: &mut Path<P>, u: f64) -> bool {
+    let throughput = path.beta.intensity() * (1.0 / path.path_pdf.mean());
+    let survival = (throughput.max() * path.eta2 as f32).min(ROULETTE_MAX);
     // False for NaN as well.
     let survives = u < f64::from(survival);
     if survives {
-        path.beta *= 1.0 / survival;
+        path.beta = path.beta * (1.0 / survival);
     }
     survives
 }
@@ -171,24 +179,14 @@ impl<'a> Event<'a> {
         wi.dot(self.hit.ng) * local_wi.z > 0.0
     }
 
-    /// Light of one sampled source that is scattered towards the viewer.
-    fn direct_light(
+    /// Light of one sampled source that is scattered towards the viewer; `None` where there is none.
+    fn sampled_light<P: Polarisation>(
         &self,
         world: &World,
         choice: f64,
         u: [f64; 2],
         wavelengths: &SampledWavelengths,
-    ) -> SampledSpectrum {
-        self.sampled_light(world, choice, u, wavelengths).unwrap_or(SampledSpectrum::ZERO)
-    }
-
-    fn sampled_light(
-        &self,
-        world: &World,
-        choice: f64,
-        u: [f64; 2],
-        wavelengths: &SampledWavelengths,
-    ) -> Option<SampledSpectrum> {
+    ) -> Option<P::Stokes> {
         let (source, probability, rest) = world.choose_light(choice)?;
         let (ray, light, pdf) = match source {
             LightSource::Part { part, material } => {
@@ -196,23 +194,25 @@ impl<'a> Event<'a> {
                 let to_light = sample.p - self.hit.p;
                 let distance2 = to_light.length_squared();
                 let wi = to_light / distance2.sqrt();
-                let cos = -wi.dot(sample.ng);
-                let radiance = world.emitter(material)?.radiance(cos, wavelengths);
-                if radiance.is_black() {
+                let radiance = world.emitter(material)?.radiance::<P>(-wi, sample.ng, wavelengths);
+                if radiance.intensity().is_black() {
                     return None;
                 }
-                let pdf = probability * sample.pdf_area * distance2 / cos.abs();
+                let pdf = probability * sample.pdf_area * distance2 / wi.dot(sample.ng).abs();
                 (self.hit.spawn_to_sample(&sample)?, radiance, Some(pdf))
             }
-            LightSource::Light(index) => match world.light(index) {
-                Light::Point(point) => {
-                    let distance2 = (point.position - self.hit.p).length_squared();
-                    (self.hit.spawn_to(point.position)?, point.irradiance(distance2, wavelengths), None)
-                }
-                Light::Distant(distant) => (self.hit.spawn(distant.wi), distant.irradiance(wavelengths), None),
-            },
+            LightSource::Light(index) => {
+                let (ray, irradiance) = match world.light(index) {
+                    Light::Point(point) => {
+                        let distance2 = (point.position - self.hit.p).length_squared();
+                        (self.hit.spawn_to(point.position)?, point.irradiance(distance2, wavelengths))
+                    }
+                    Light::Distant(distant) => (self.hit.spawn(distant.wi), distant.irradiance(wavelengths)),
+                };
+                (ray, P::Stokes::unpolarised(irradiance), None)
+            }
             LightSource::Environment(index) => {
-                let sample = world.environment(index).sample(u, wavelengths)?;
+                let sample = world.environment(index).sample::<P>(u, wavelengths)?;
                 (self.hit.spawn(sample.wi), sample.radiance, Some(probability * sample.pdf))
             }
         };
@@ -220,8 +220,8 @@ impl<'a> Event<'a> {
         if !self.sides_agree(wi, local_wi) {
             return None;
         }
-        let value = self.bsdf.eval(self.local_wo, local_wi, wavelengths) * local_wi.z.abs() as f32;
-        if value.is_black() || light.is_black() {
+        let value = self.bsdf.eval::<P>(self.local_wo, local_wi, wavelengths) * local_wi.z.abs() as f32;
+        if value.intensity().is_black() || light.intensity().is_black() {
             return None;
         }
         let weight = match pdf {
@@ -231,24 +231,31 @@ impl<'a> Event<'a> {
         if !(weight > 0.0 && weight.is_finite()) || world.geometry.occluded(&ray) {
             return None;
         }
-        Some(value * light * weight as f32)
+        Some(value.to_world(&self.frame).apply(&light) * weight as f32)
     }
 
     /// Extends the path by a sampled direction; false where it ends.
     #[inline]
-    fn scatter(&self, path: &mut Path, u: [f64; 2], u_lobe: f64, wavelengths: &SampledWavelengths) -> bool {
-        let Some(sample) = self.bsdf.sample(self.local_wo, u, u_lobe, wavelengths) else {
+    fn scatter<P: Polarisation>(
+        &self,
+        path: &mut Path<P>,
+        u: [f64; 2],
+        u_lobe: f64,
+        wavelengths: &SampledWavelengths,
+    ) -> bool {
+        let Some(sample) = self.bsdf.sample::<P>(self.local_wo, u, u_lobe, wavelengths) else {
             return false;
         };
         let wi = self.frame.to_world(sample.wi);
         if !self.sides_agree(wi, sample.wi) {
             return false;
         }
-        path.beta *= sample.weight;
+        path.beta = path.beta.then(&sample.weight.to_world(&self.frame));
         path.path_pdf *= sample.path_pdf;
         path.direction_pdf = (!sample.specular).then_some(sample.pdf);
         path.eta2 *= sample.eta * sample.eta;
         path.ray = self.hit.spawn(wi);
-        !path.beta.is_black() && path.beta.is_valid()
+        let intensity = path.beta.intensity();
+        !intensity.is_black() && intensity.is_valid()
     }
 }

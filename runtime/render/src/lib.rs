@@ -2,6 +2,7 @@
 //!
 //! An integrator sees a [`World`] and a [`Camera`], and gives a [`Film`]: sums and weights per pixel and band, mergeable.
 //! Every random number is a function of (seed, pixel, sample, dimension): same seed, same bytes, whatever the threads.
+//! Transport is generic over [`polarisation::Polarisation`], and compiled for light with and without.
 //! Radiometry: radiance in W m^-2 sr^-1 nm^-1, one scene unit is one metre (docs/radiometry.md).
 
 pub mod bsdf;
@@ -16,6 +17,7 @@ pub mod fresnel;
 mod integrator;
 pub mod light;
 mod path_trace;
+pub mod polarisation;
 mod sampler;
 pub mod warp;
 mod world;

@@ -13,6 +13,7 @@ use arsc_spectral::SampledWavelengths;
 use crate::camera::Camera;
 use crate::film::{Bands, Film, Tile};
 use crate::integrator::incident_radiance;
+use crate::polarisation::{Polarisation, Polarised, Unpolarised};
 use crate::sampler::Sampler;
 use crate::world::World;
 
@@ -27,11 +28,13 @@ pub struct PathTraceSettings {
     /// Pixels x0, y0, x1, y1 (end exclusive) of the full image; the rest stays empty.
     pub crop: Option<[u32; 4]>,
     pub bands: Bands,
+    /// Keep track of polarisation, and of the Stokes parameters S1 to S3 on the film.
+    pub polarised: bool,
 }
 
 impl Default for PathTraceSettings {
     fn default() -> PathTraceSettings {
-        PathTraceSettings { samples: 64, max_depth: 20, seed: 0, crop: None, bands: Bands::default() }
+        PathTraceSettings { samples: 64, max_depth: 20, seed: 0, crop: None, bands: Bands::default(), polarised: false }
     }
 }
 
@@ -60,13 +63,14 @@ const WAVELENGTHS: u32 = 1;
 
 /// Renders on the threads of the current rayon pool.
 pub fn path_trace(world: &World, camera: &Camera, settings: &PathTraceSettings, progress: &dyn Progress) -> Film {
-    let mut film = Film::new(camera.resolution(), settings.crop, settings.bands);
+    let mut film = Film::new(camera.resolution(), settings.crop, settings.bands, settings.polarised);
+    let trace = if settings.polarised { trace_tile::<Polarised> } else { trace_tile::<Unpolarised> };
     let mut done = 0;
     while done < settings.samples && !film.tiles.is_empty() && !progress.cancelled() {
         let pass = done.clamp(1, LONGEST_PASS).min(settings.samples - done);
         film.tiles.par_iter_mut().for_each(|tile| {
             if !progress.cancelled() {
-                trace_tile(world, camera, settings, done..done + pass, tile);
+                trace(world, camera, settings, done..done + pass, tile);
                 progress.advance(u64::from(tile.width) * u64::from(tile.height) * u64::from(pass));
             }
         });
@@ -75,7 +79,7 @@ pub fn path_trace(world: &World, camera: &Camera, settings: &PathTraceSettings, 
     film
 }
 
-fn trace_tile(
+fn trace_tile<P: Polarisation>(
     world: &World,
     camera: &Camera,
     settings: &PathTraceSettings,
@@ -91,8 +95,9 @@ fn trace_tile(
                 let position = camera.filter.sample(sampler.pair(PIXEL_POSITION));
                 let center = DVec2::new(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
                 let ray = camera.ray(center + position.offset);
-                let radiance = incident_radiance(world, ray, &wavelengths, &sampler, settings.max_depth);
-                tile.add(x, y, &wavelengths, radiance, position.weight);
+                let horizontal = camera.horizontal(&ray);
+                let light = incident_radiance::<P>(world, ray, horizontal, &wavelengths, &sampler, settings.max_depth);
+                tile.add(x, y, &wavelengths, &light, position.weight);
             }
         }
     }

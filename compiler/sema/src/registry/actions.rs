@@ -6,7 +6,7 @@ use arsc_ir::{Action, Exposure};
 use super::{Builtin, Param};
 use crate::code::Site;
 use crate::eval::Eval;
-use crate::types::Type::{self, Float, Int, Str};
+use crate::types::Type::{self, Bool, Float, Int, Str};
 use crate::value::Value;
 
 pub fn builtins() -> Vec<Builtin> {
@@ -23,11 +23,13 @@ fn scene_actions() -> Vec<Builtin> {
             .param(Param::new("samples", Int, "per pixel").int(128).within(1.0, 4_294_967_295.0))
             .param(Param::new("max_depth", Int, "longest path, in scattering events").int(16).within(1.0, 65_536.0))
             .param(Param::new("seed", Int, "of the random numbers").int(0).non_negative())
+            .param(Param::new("polarised", Bool, "trace Stokes vectors and write S0 to S3").bool(false))
             .runs(Type::Action, |_, a, site| {
                 let action = Action::PathTrace {
                     samples: a[0].as_int() as u32,
                     max_depth: a[1].as_int() as u32,
                     seed: a[2].as_int() as u64,
+                    polarised: a[3].as_bool(),
                 };
                 Ok(Value::action(action, site.span))
             }),

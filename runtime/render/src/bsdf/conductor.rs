@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use super::BsdfSample;
 use crate::fresnel;
+use crate::polarisation::Polarisation;
 
 /// Smallest real part of the index: keeps the equations away from 0/0.
 const MIN_ETA: f32 = 1e-3;
@@ -25,9 +26,9 @@ impl Conductor {
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: DVec3, wavelengths: &SampledWavelengths) -> Option<BsdfSample> {
+    pub(super) fn sample<P: Polarisation>(&self, wo: DVec3, wavelengths: &SampledWavelengths) -> Option<BsdfSample<P>> {
         let cos = wo.z.abs().min(1.0) as f32;
-        let weight = fresnel::conductor(cos, self.eta.sample(wavelengths), self.k.sample(wavelengths));
-        (wo.z != 0.0).then(|| BsdfSample::specular_reflection(wo, weight))
+        let effect = fresnel::conductor_reflection(cos, self.eta.sample(wavelengths), self.k.sample(wavelengths));
+        (wo.z != 0.0).then(|| BsdfSample::specular_reflection(wo, &effect))
     }
 }

@@ -2,13 +2,15 @@
 //!
 //! Reflection is chosen with the Fresnel reflectance of the hero wavelength. The other wavelengths of the path would
 //! reflect into the same direction, so they stay, each with its own probability; they refract into the same direction
-//! only if their index is the same. Refraction with dispersion therefore leaves the hero alone.
+//! only if their index is the same. Refraction with dispersion therefore leaves the hero alone. The choice looks at
+//! unpolarised light; polarised light is weighted.
 
 use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 
 use super::BsdfSample;
-use crate::fresnel;
+use crate::fresnel::{self, Interface};
+use crate::polarisation::{Mueller, Polarisation, s_axis};
 
 /// Limits of the index; a medium of index 1 is invisible.
 const MIN_INDEX: f32 = 1e-2;
@@ -25,7 +27,12 @@ impl Dielectric {
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: DVec3, u_lobe: f64, wavelengths: &SampledWavelengths) -> Option<BsdfSample> {
+    pub(super) fn sample<P: Polarisation>(
+        &self,
+        wo: DVec3,
+        u_lobe: f64,
+        wavelengths: &SampledWavelengths,
+    ) -> Option<BsdfSample<P>> {
         if wo.z == 0.0 {
             return None;
         }
@@ -33,18 +40,24 @@ impl Dielectric {
         let ior = self.ior.sample(wavelengths);
         let relative = |index: f32| if wo.z > 0.0 { f64::from(index) } else { 1.0 / f64::from(index) };
         let eta = relative(ior.hero());
-        let (reflectance, cos_t) = fresnel::dielectric(cos_o, eta);
+        let hero = Interface::new(cos_o, eta);
+        let reflectance = hero.reflectance();
         if u_lobe < reflectance {
-            let mut sample = BsdfSample::specular_reflection(wo, SampledSpectrum::ONE);
-            if !ior.is_flat() {
-                let ratio = ior.map(|index| (fresnel::dielectric(cos_o, relative(index)).0 / reflectance) as f32);
-                (sample.weight, sample.path_pdf) = (ratio, ratio);
+            if ior.is_flat() {
+                let effect = fresnel::gather([hero.reflection(); 4], 1.0 / reflectance);
+                return Some(BsdfSample::specular_reflection(wo, &effect));
             }
-            return Some(sample);
+            let each = ior.0.to_array().map(|index| Interface::new(cos_o, relative(index)).reflection());
+            let effect = fresnel::gather(each, 1.0 / reflectance);
+            let sample = BsdfSample::specular_reflection(wo, &effect);
+            return Some(BsdfSample { path_pdf: effect.a, ..sample });
         }
-        let wi = DVec3::new(-wo.x / eta, -wo.y / eta, -cos_t.copysign(wo.z));
+        let wi = DVec3::new(-wo.x / eta, -wo.y / eta, -hero.cos_t.copysign(wo.z));
         let remaining = if ior.is_flat() { SampledSpectrum::ONE } else { SampledSpectrum::ONE.hero_only() };
+        let effect = fresnel::gather([hero.refraction(); 4], 1.0 / (1.0 - reflectance));
         let weight = remaining * (1.0 / (eta * eta)) as f32;
+        let axis = s_axis(DVec3::Z, wo);
+        let weight = P::Mueller::diattenuating_retarder(&(effect * weight), axis, wo, wi);
         Some(BsdfSample { wi, weight, path_pdf: remaining, pdf: 1.0, specular: true, eta })
     }
 }

@@ -1,4 +1,4 @@
-//! Ideal diffuse reflection: f = reflectance / pi.
+//! Ideal diffuse reflection: f = reflectance / pi. It depolarises.
 
 use std::f32::consts::FRAC_1_PI;
 
@@ -6,6 +6,7 @@ use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum
 use glam::DVec3;
 
 use super::{BsdfSample, cosine_direction, cosine_pdf};
+use crate::polarisation::Polarisation;
 
 #[derive(Clone, Debug)]
 pub struct Lambert {
@@ -26,7 +27,12 @@ impl Lambert {
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: DVec3, u: [f64; 2], wavelengths: &SampledWavelengths) -> Option<BsdfSample> {
+    pub(super) fn sample<P: Polarisation>(
+        &self,
+        wo: DVec3,
+        u: [f64; 2],
+        wavelengths: &SampledWavelengths,
+    ) -> Option<BsdfSample<P>> {
         let wi = cosine_direction(wo, u)?;
         Some(BsdfSample::diffuse(wi, self.reflectance.sample(wavelengths), cosine_pdf(wo, wi)))
     }

@@ -1,9 +1,11 @@
-//! Ideal mirror: the same reflectance at every angle, on both sides.
+//! Ideal mirror: the same reflectance at every angle, on both sides. Polarised light is turned over, as by a perfect
+//! conductor.
 
 use arsc_spectral::{DenseSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 
 use super::BsdfSample;
+use crate::polarisation::{DiattenuatingRetarder, Polarisation};
 
 #[derive(Clone, Debug)]
 pub struct Mirror {
@@ -16,7 +18,8 @@ impl Mirror {
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: DVec3, wavelengths: &SampledWavelengths) -> Option<BsdfSample> {
-        (wo.z != 0.0).then(|| BsdfSample::specular_reflection(wo, self.reflectance.sample(wavelengths)))
+    pub(super) fn sample<P: Polarisation>(&self, wo: DVec3, wavelengths: &SampledWavelengths) -> Option<BsdfSample<P>> {
+        let effect = DiattenuatingRetarder::mirror(self.reflectance.sample(wavelengths));
+        (wo.z != 0.0).then(|| BsdfSample::specular_reflection(wo, &effect))
     }
 }

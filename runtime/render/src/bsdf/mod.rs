@@ -5,6 +5,9 @@
 //! `wi`, except that specular lobes state the probability with which they were chosen. Light is traced against its
 //! direction: refraction includes the change of radiance by the square of the relative index.
 //!
+//! A model states what it does to light once, as a depolarising value or a [`DiattenuatingRetarder`]; whether Mueller
+//! matrices come of it is up to the mode. Directions and densities never depend on polarisation.
+//!
 //! Diffuse lobes are two-sided: they reflect on the side where `wo` is. One file per model; the enum keeps the inner
 //! loop free of indirect calls and allocation.
 
@@ -16,6 +19,8 @@ mod oren_nayar;
 
 use arsc_spectral::{SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
+
+use crate::polarisation::{DiattenuatingRetarder, Mueller, Polarisation, s_axis};
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
@@ -35,10 +40,10 @@ pub enum Bsdf {
 
 /// A sampled direction.
 #[derive(Clone, Copy, Debug)]
-pub struct BsdfSample {
+pub struct BsdfSample<P: Polarisation> {
     pub wi: DVec3,
     /// f |cos(wi)| / pdf, with the pdf of the hero wavelength.
-    pub weight: SampledSpectrum,
+    pub weight: P::Mueller,
     /// Probability of the sampled event at each wavelength over that at the hero. Zero where another wavelength
     /// would have gone elsewhere: the path goes on with those that remain.
     pub path_pdf: SampledSpectrum,
@@ -84,12 +89,12 @@ impl Bsdf {
 
     /// The value f(wo, wi) in sr^-1 without the cosine; zero for specular lobes.
     #[inline]
-    pub fn eval(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> SampledSpectrum {
-        match self {
+    pub fn eval<P: Polarisation>(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> P::Mueller {
+        P::Mueller::depolariser(match self {
             Bsdf::Lambert(lambert) => lambert.eval(wo, wi, wavelengths),
             Bsdf::OrenNayar(oren_nayar) => oren_nayar.eval(wo, wi, wavelengths),
             Bsdf::Mirror(_) | Bsdf::Dielectric(_) | Bsdf::Conductor(_) => SampledSpectrum::ZERO,
-        }
+        })
     }
 
     /// Density per steradian with which [`Bsdf::sample`] gives `wi`; zero for specular lobes.
@@ -103,7 +108,13 @@ impl Bsdf {
 
     /// A direction; `u` picks it within a lobe, `u_lobe` picks the lobe. `None` where nothing is scattered.
     #[inline]
-    pub fn sample(&self, wo: DVec3, u: [f64; 2], u_lobe: f64, wavelengths: &SampledWavelengths) -> Option<BsdfSample> {
+    pub fn sample<P: Polarisation>(
+        &self,
+        wo: DVec3,
+        u: [f64; 2],
+        u_lobe: f64,
+        wavelengths: &SampledWavelengths,
+    ) -> Option<BsdfSample<P>> {
         match self {
             Bsdf::Lambert(lambert) => lambert.sample(wo, u, wavelengths),
             Bsdf::OrenNayar(oren_nayar) => oren_nayar.sample(wo, u, wavelengths),
@@ -140,23 +151,20 @@ fn cosine_direction(wo: DVec3, u: [f64; 2]) -> Option<DVec3> {
     Some(wi)
 }
 
-impl BsdfSample {
+impl<P: Polarisation> BsdfSample<P> {
     /// Reflection by a smooth surface, the same event at every wavelength.
     #[inline]
-    fn specular_reflection(wo: DVec3, weight: SampledSpectrum) -> BsdfSample {
-        BsdfSample {
-            wi: DVec3::new(-wo.x, -wo.y, wo.z),
-            weight,
-            path_pdf: SampledSpectrum::ONE,
-            pdf: 1.0,
-            specular: true,
-            eta: 1.0,
-        }
+    fn specular_reflection(wo: DVec3, effect: &DiattenuatingRetarder) -> BsdfSample<P> {
+        let wi = DVec3::new(-wo.x, -wo.y, wo.z);
+        let weight = P::Mueller::diattenuating_retarder(effect, s_axis(DVec3::Z, wo), wo, wi);
+        BsdfSample { wi, weight, path_pdf: SampledSpectrum::ONE, pdf: 1.0, specular: true, eta: 1.0 }
     }
 
-    /// A direction drawn from a density per steradian that is the same at every wavelength.
+    /// A direction drawn from a density per steradian that is the same at every wavelength; what it scatters is
+    /// depolarised.
     #[inline]
-    fn diffuse(wi: DVec3, weight: SampledSpectrum, pdf: f64) -> BsdfSample {
+    fn diffuse(wi: DVec3, weight: SampledSpectrum, pdf: f64) -> BsdfSample<P> {
+        let weight = P::Mueller::depolariser(weight);
         BsdfSample { wi, weight, path_pdf: SampledSpectrum::ONE, pdf, specular: false, eta: 1.0 }
     }
 }

@@ -1,4 +1,4 @@
-//! Rough diffuse reflection by Lambertian facets with Gaussian slopes.
+//! Rough diffuse reflection by Lambertian facets with Gaussian slopes. It depolarises.
 //!
 //! The qualitative model of Oren and Nayar 1994, equation 30: f = reflectance / pi (A + B max(0, cos dphi) sin alpha
 //! tan beta), A = 1 - sigma^2 / (2 (sigma^2 + 0.33)), B = 0.45 sigma^2 / (sigma^2 + 0.09). The angular factor is
@@ -12,6 +12,7 @@ use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum
 use glam::DVec3;
 
 use super::{BsdfSample, cosine_direction, cosine_pdf};
+use crate::polarisation::Polarisation;
 
 #[derive(Clone, Debug)]
 pub struct OrenNayar {
@@ -47,7 +48,12 @@ impl OrenNayar {
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: DVec3, u: [f64; 2], wavelengths: &SampledWavelengths) -> Option<BsdfSample> {
+    pub(super) fn sample<P: Polarisation>(
+        &self,
+        wo: DVec3,
+        u: [f64; 2],
+        wavelengths: &SampledWavelengths,
+    ) -> Option<BsdfSample<P>> {
         let wi = cosine_direction(wo, u)?;
         let weight = self.reflectance.sample(wavelengths) * self.shape(wo, wi) as f32;
         Some(BsdfSample::diffuse(wi, weight, cosine_pdf(wo, wi)))

@@ -6,8 +6,10 @@ use arsc_spectral::{SampledWavelengths, Spectrum};
 use glam::DVec3;
 use rand::Rng;
 
+use super::mueller::assert_physical;
 use super::{assert_directions_follow, mean, pair, random};
 use crate::bsdf::Bsdf;
+use crate::polarisation::{Mueller, Polarised, ReferenceFrame, Unpolarised};
 
 /// From the zenith to almost grazing, above the surface and below.
 fn directions() -> Vec<DVec3> {
@@ -30,12 +32,13 @@ fn assert_conforms(bsdf: &Bsdf) {
             let name = format!("{bsdf:?} at {wo}");
             let sample = |random: &mut _| {
                 let (u, lobe) = (pair(random), random.random());
-                bsdf.sample(wo, u, lobe, &wavelengths()).map(|sample| sample.wi)
+                bsdf.sample::<Unpolarised>(wo, u, lobe, &wavelengths()).map(|sample| sample.wi)
             };
             assert_directions_follow(&name, sample, |wi| bsdf.pdf(wo, wi));
             samples_agree_with_values(bsdf, wo);
         }
         gains_no_energy(bsdf, wo);
+        polarises_physically(bsdf, wo);
     }
     is_reciprocal(bsdf);
     survives_grazing(bsdf);
@@ -45,10 +48,10 @@ fn assert_conforms(bsdf: &Bsdf) {
 fn samples_agree_with_values(bsdf: &Bsdf, wo: DVec3) {
     let (mut random, w) = (random(), wavelengths());
     for _ in 0..1000 {
-        let Some(sample) = bsdf.sample(wo, pair(&mut random), random.random(), &w) else { continue };
+        let Some(sample) = bsdf.sample::<Unpolarised>(wo, pair(&mut random), random.random(), &w) else { continue };
         let pdf = bsdf.pdf(wo, sample.wi);
         assert!((sample.pdf / pdf - 1.0).abs() < 1e-12, "{bsdf:?}");
-        let expected = bsdf.eval(wo, sample.wi, &w) * (sample.wi.z.abs() / pdf) as f32;
+        let expected = bsdf.eval::<Unpolarised>(wo, sample.wi, &w) * (sample.wi.z.abs() / pdf) as f32;
         assert!((sample.weight - expected).0.abs().max_element() < 1e-5, "{bsdf:?}: {sample:?}, {expected:?}");
         assert!(!sample.specular && sample.eta == 1.0);
     }
@@ -64,7 +67,7 @@ fn gains_no_energy(bsdf: &Bsdf, wo: DVec3) {
             let hero = random.random_range(0..4usize);
             let lambda = w.lambda_nm.to_array();
             let rotated = SampledWavelengths::fixed(std::array::from_fn(|i| f64::from(lambda[(i + hero) % 4])));
-            bsdf.sample(wo, pair(&mut random), random.random(), &rotated).map_or(0.0, |sample| {
+            bsdf.sample::<Unpolarised>(wo, pair(&mut random), random.random(), &rotated).map_or(0.0, |sample| {
                 let weight = sample.weight.0.to_array()[(component + 4 - hero) % 4] / sample.path_pdf.mean();
                 f64::from(weight) * sample.eta * sample.eta
             })
@@ -73,11 +76,39 @@ fn gains_no_energy(bsdf: &Bsdf, wo: DVec3) {
     }
 }
 
+/// With polarisation, samples go the same ways with the same intensity; their matrices are physical, and refer to
+/// frames about the directions. So do the matrices of `eval`.
+fn polarises_physically(bsdf: &Bsdf, wo: DVec3) {
+    let (mut random, w) = (random(), wavelengths());
+    for _ in 0..200 {
+        let (u, u_lobe) = (pair(&mut random), random.random());
+        let plain = bsdf.sample::<Unpolarised>(wo, u, u_lobe, &w);
+        let Some(sample) = bsdf.sample::<Polarised>(wo, u, u_lobe, &w) else {
+            assert!(plain.is_none());
+            continue;
+        };
+        let plain = plain.expect("the same choice");
+        assert!(plain.wi == sample.wi && plain.pdf == sample.pdf && plain.path_pdf == sample.path_pdf, "{bsdf:?}");
+        assert_eq!(plain.weight, sample.weight.intensity(), "{bsdf:?}");
+        let name = format!("{bsdf:?} from {wo} to {}", sample.wi);
+        let value = bsdf.eval::<Polarised>(wo, sample.wi, &w);
+        assert_eq!(value.intensity(), bsdf.eval::<Unpolarised>(wo, sample.wi, &w));
+        for matrix in [sample.weight, value] {
+            assert_physical(&name, &matrix);
+            for (frame, k) in [(matrix.outgoing, wo), (matrix.incoming, -sample.wi)] {
+                let free = frame == ReferenceFrame::default();
+                assert!(free || (frame.x.cross(frame.y) - k).length() < 1e-9, "{name}: {frame:?} about {k}");
+            }
+        }
+    }
+}
+
 fn is_reciprocal(bsdf: &Bsdf) {
     let w = wavelengths();
     for a in directions() {
         for b in directions() {
-            let difference = (bsdf.eval(a, b, &w) - bsdf.eval(b, a, &w)).0.abs().max_element();
+            let difference =
+                (bsdf.eval::<Unpolarised>(a, b, &w) - bsdf.eval::<Unpolarised>(b, a, &w)).0.abs().max_element();
             assert!(difference < 1e-6, "{bsdf:?}: f({a}, {b}) and f({b}, {a}) differ by {difference}");
         }
     }
@@ -90,10 +121,10 @@ fn survives_grazing(bsdf: &Bsdf) {
         let wo = DVec3::new((1.0 - z * z).sqrt(), 0.0, z);
         for _ in 0..100 {
             let u = [random.random(), [0.0, 1.0 - 1e-10, random.random()][random.random_range(0..3)]];
-            let Some(sample) = bsdf.sample(wo, u, random.random(), &w) else { continue };
+            let Some(sample) = bsdf.sample::<Unpolarised>(wo, u, random.random(), &w) else { continue };
             assert!(sample.weight.is_valid() && sample.path_pdf.is_valid(), "{bsdf:?} at {wo}: {sample:?}");
             assert!((sample.wi.length() - 1.0).abs() < 1e-9 && sample.pdf > 0.0, "{bsdf:?} at {wo}: {sample:?}");
-            assert!(bsdf.eval(wo, sample.wi, &w).is_valid() && bsdf.pdf(wo, sample.wi).is_finite());
+            assert!(bsdf.eval::<Unpolarised>(wo, sample.wi, &w).is_valid() && bsdf.pdf(wo, sample.wi).is_finite());
         }
     }
 }
@@ -147,7 +178,7 @@ fn oren_nayar_is_the_published_function() {
         let wi = DVec3::new(theta_i.sin() * dphi.cos(), theta_i.sin() * dphi.sin(), theta_i.cos());
         let (alpha, beta) = (theta_o.max(theta_i), theta_o.min(theta_i));
         let exact = 0.7 / std::f64::consts::PI * (a + b * dphi.cos().max(0.0) * alpha.sin() * beta.tan());
-        let got = f64::from(bsdf.eval(wo, wi, &wavelengths()).hero());
+        let got = f64::from(bsdf.eval::<Unpolarised>(wo, wi, &wavelengths()).hero());
         assert!((got / exact - 1.0).abs() < 1e-6, "{got} instead of {exact}");
     }
 }
@@ -157,7 +188,7 @@ fn oren_nayar_is_the_published_function() {
 fn refraction_obeys_snell() {
     let bsdf = Bsdf::dielectric(&constant(1.5));
     for wo in directions() {
-        let Some(sample) = bsdf.sample(wo, [0.5; 2], 1.0, &wavelengths()) else { continue };
+        let Some(sample) = bsdf.sample::<Unpolarised>(wo, [0.5; 2], 1.0, &wavelengths()) else { continue };
         if sample.wi.z * wo.z > 0.0 {
             continue; // total reflection
         }

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::{SAMPLES, assert_directions_follow, mean, pair, random};
 use crate::light::{Environment, SkySettings};
+use crate::polarisation::Unpolarised;
 
 fn wavelengths() -> SampledWavelengths {
     SampledWavelengths::fixed([420.0, 530.0, 600.0, 780.0])
@@ -16,7 +17,7 @@ fn wavelengths() -> SampledWavelengths {
 /// midpoint rule.
 fn assert_conforms(environment: &Environment) {
     let w = wavelengths();
-    let sample = |random: &mut _| environment.sample(pair(random), &w).map(|sample| sample.wi);
+    let sample = |random: &mut _| environment.sample::<Unpolarised>(pair(random), &w).map(|sample| sample.wi);
     assert_directions_follow("environment", sample, |wi| environment.pdf(wi));
     samples_agree_with_values(environment);
     let n = 1000;
@@ -26,7 +27,7 @@ fn assert_conforms(environment: &Environment) {
         let z = z / n as f64 - 1.0;
         let (sin, cos) = (TAU * turn / n as f64).sin_cos();
         let r = (1.0 - z * z).sqrt();
-        let radiance = environment.radiance(DVec3::new(r * cos, r * sin, z), &w);
+        let radiance = environment.radiance::<Unpolarised>(DVec3::new(r * cos, r * sin, z), &w);
         integral += f64::from(radiance.0.y) * TAU / (n * n) as f64;
     }
     estimates(environment, integral);
@@ -35,9 +36,9 @@ fn assert_conforms(environment: &Environment) {
 fn samples_agree_with_values(environment: &Environment) {
     let (mut random, w) = (random(), wavelengths());
     for _ in 0..1000 {
-        let Some(sample) = environment.sample(pair(&mut random), &w) else { continue };
+        let Some(sample) = environment.sample::<Unpolarised>(pair(&mut random), &w) else { continue };
         assert!((sample.wi.length() - 1.0).abs() < 1e-12);
-        assert_eq!(sample.radiance, environment.radiance(sample.wi, &w));
+        assert_eq!(sample.radiance, environment.radiance::<Unpolarised>(sample.wi, &w));
         assert_eq!(sample.pdf, environment.pdf(sample.wi));
         assert!(sample.radiance.is_valid() && sample.pdf > 0.0);
     }
@@ -46,7 +47,7 @@ fn samples_agree_with_values(environment: &Environment) {
 fn estimates(environment: &Environment, integral: f64) {
     let (mut random, w) = (random(), wavelengths());
     let values = (0..SAMPLES).map(|_| {
-        let sample = environment.sample(pair(&mut random), &w);
+        let sample = environment.sample::<Unpolarised>(pair(&mut random), &w);
         sample.map_or(0.0, |sample| f64::from(sample.radiance.0.y) / sample.pdf)
     });
     let (mean, error) = mean(values);
@@ -83,7 +84,7 @@ fn sky_with_disc() {
         for i in 0..n * n {
             let u = [i % n, i / n].map(|k| (k as f64 + 0.5) / n as f64);
             let wi = frame.to_world(crate::warp::uniform_cone(u, cos_max));
-            sum += f64::from(environment.radiance(wi, &w).0.y);
+            sum += f64::from(environment.radiance::<Unpolarised>(wi, &w).0.y);
         }
         sum * TAU * (1.0 - cos_max) / (n * n) as f64
     };
@@ -100,7 +101,7 @@ fn sky_with_disc() {
 fn a_sun_below_the_horizon_has_no_disc() {
     let night = sky(-0.1, 0.0, true);
     let sun = DVec3::new((-0.1f64).cos(), 0.0, (-0.1f64).sin());
-    assert_eq!(night.radiance(sun, &wavelengths()).max(), 0.0);
+    assert_eq!(night.radiance::<Unpolarised>(sun, &wavelengths()).max(), 0.0);
     samples_agree_with_values(&night);
 }
 
@@ -108,6 +109,6 @@ fn a_sun_below_the_horizon_has_no_disc() {
 fn a_black_or_broken_sky_is_black() {
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let settings = SkySettings { turbidity: 2.0, ground_albedo: 0.0, sun: DVec3::ZERO, solar_disc: true, scale };
-        assert_eq!(Environment::hosek_wilkie(&settings).radiance(DVec3::Z, &wavelengths()).max(), 0.0);
+        assert_eq!(Environment::hosek_wilkie(&settings).radiance::<Unpolarised>(DVec3::Z, &wavelengths()).max(), 0.0);
     }
 }

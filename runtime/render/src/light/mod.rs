@@ -14,6 +14,8 @@ mod sky;
 use arsc_spectral::{SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 
+use crate::polarisation::{Polarisation, Stokes};
+
 pub use alias::AliasTable;
 pub use constant::ConstantEnvironment;
 pub use distant::DistantLight;
@@ -56,9 +58,9 @@ pub enum Environment {
 
 /// A direction to an environment.
 #[derive(Clone, Copy, Debug)]
-pub struct EnvironmentSample {
+pub struct EnvironmentSample<R = SampledSpectrum> {
     pub wi: DVec3,
-    pub radiance: SampledSpectrum,
+    pub radiance: R,
     /// Per steradian.
     pub pdf: f64,
 }
@@ -76,20 +78,25 @@ impl Environment {
 
     /// Radiance that arrives from the direction `wi`.
     #[inline]
-    pub fn radiance(&self, wi: DVec3, wavelengths: &SampledWavelengths) -> SampledSpectrum {
-        match self {
+    pub fn radiance<P: Polarisation>(&self, wi: DVec3, wavelengths: &SampledWavelengths) -> P::Stokes {
+        P::Stokes::unpolarised(match self {
             Environment::Constant(constant) => constant.radiance(wavelengths),
             Environment::Sky(sky) => sky.radiance(wi, wavelengths),
-        }
+        })
     }
 
     /// A direction with density roughly in proportion to radiance.
     #[inline]
-    pub fn sample(&self, u: [f64; 2], wavelengths: &SampledWavelengths) -> Option<EnvironmentSample> {
-        match self {
-            Environment::Constant(constant) => Some(constant.sample(u, wavelengths)),
-            Environment::Sky(sky) => sky.sample(u, wavelengths),
-        }
+    pub fn sample<P: Polarisation>(
+        &self,
+        u: [f64; 2],
+        wavelengths: &SampledWavelengths,
+    ) -> Option<EnvironmentSample<P::Stokes>> {
+        let EnvironmentSample { wi, radiance, pdf } = match self {
+            Environment::Constant(constant) => constant.sample(u, wavelengths),
+            Environment::Sky(sky) => sky.sample(u, wavelengths)?,
+        };
+        Some(EnvironmentSample { wi, radiance: P::Stokes::unpolarised(radiance), pdf })
     }
 
     /// Density per steradian with which [`Environment::sample`] gives `wi`.

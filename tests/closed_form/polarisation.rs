@@ -1,0 +1,123 @@
+//! Polarised light in pictures. Stokes parameters as the camera sees them: S1 > 0 is level, S2 > 0 rises to the right.
+
+use arsc_accel::{Shape, SurfaceShape};
+use arsc_render::fresnel::Interface;
+use arsc_render::{Bsdf, Environment, Material};
+use glam::{DAffine3, DQuat, DVec3};
+
+use super::support::{Stage, camera, constant, emitter, estimate, render, spot_camera, stokes};
+
+fn smooth(bsdf: Bsdf) -> Material {
+    Material { bsdf, emitter: None }
+}
+
+/// A glass floor under an angle, which mirrors a disk of radiance 1; `roll` turns camera and floor about the view axis.
+fn floor(bsdf: Bsdf, angle: f64, roll: f64, samples: u32) -> [f64; 4] {
+    let mut stage = Stage::default();
+    let towards = DVec3::new(angle.sin(), 0.0, angle.cos());
+    let eye = DVec3::new(-towards.x, 0.0, towards.z);
+    let turn = DAffine3::from_axis_angle(eye, roll);
+    stage.solid(Shape::HalfSpace, turn, smooth(bsdf));
+    let place = DAffine3::from_rotation_translation(DQuat::from_rotation_arc(DVec3::Z, -towards), towards * 3.0);
+    stage.surface(SurfaceShape::Disk { radius: 0.05 }, turn * place, emitter(constant(1.0)));
+    stokes(&stage.build(), &spot_camera(eye, DVec3::ZERO), samples, 4)
+}
+
+fn close(found: [f64; 4], exact: [f64; 4], bound: f64) {
+    for (f, e) in found.iter().zip(exact) {
+        assert!((f - e).abs() < bound, "{found:?} instead of {exact:?}");
+    }
+}
+
+/// Fresnel over the angle, for s and p: unpolarised light is reflected as S0 = (R_s + R_p) / 2 and S1 = (R_s - R_p) / 2,
+/// level because s is. At Brewster's angle nothing but s is left. Bound as in `specular::glass`.
+#[test]
+fn glass_polarises_by_reflection() {
+    let brewster = 1.5f64.atan();
+    for angle in [0.1, 0.6, brewster, 1.2, 1.5] {
+        let Interface { rs, rp, .. } = Interface::new(angle.cos(), 1.5);
+        let exact = [0.5 * (rs + rp), 0.5 * (rs - rp), 0.0, 0.0];
+        close(floor(Bsdf::dielectric(&constant(1.5)), angle, 0.0, 4096), exact, 1.0 / 4096.0);
+        if angle == brewster {
+            assert!(rp < 1e-20 && (exact[0] - exact[1]).abs() < 1e-12);
+        }
+    }
+}
+
+/// The floor turned by 45 and by 30 degrees about the view, counter-clockwise for the camera as the axis points at it: so that
+/// what was level rises to the right.
+#[test]
+fn the_direction_of_polarisation_follows_the_scene() {
+    let Interface { rs, rp, .. } = Interface::new(0.5, 1.5);
+    let (mean, half) = (0.5 * (rs + rp), 0.5 * (rs - rp));
+    for roll in [45f64, 30.0, -45.0] {
+        let (sin, cos) = (2.0 * roll.to_radians()).sin_cos();
+        let exact = [mean, half * cos, half * sin, 0.0];
+        close(floor(Bsdf::dielectric(&constant(1.5)), 0.5f64.acos(), roll.to_radians(), 4096), exact, 1.0 / 4096.0);
+    }
+}
+
+/// Without noise: metal reflects every path.
+#[test]
+fn metal_polarises_by_reflection() {
+    for cos in [0.9f64, 0.5, 0.2] {
+        // Complex amplitudes written out for (0.27 + 2.95 i)^2 = -8.6296 + 1.593 i.
+        let (re, im) = (0.27f64 * 0.27 - 2.95 * 2.95, 2.0 * 0.27 * 2.95);
+        let (t_re, t_im) = (re - (1.0 - cos * cos), im);
+        let r = t_re.hypot(t_im);
+        let (a, b) = ((0.5 * (r + t_re)).sqrt(), (0.5 * (r - t_re)).sqrt());
+        let rs = ((cos - a).powi(2) + b * b) / ((cos + a).powi(2) + b * b);
+        let rp = ((re * cos - a).powi(2) + (im * cos - b).powi(2)) / ((re * cos + a).powi(2) + (im * cos + b).powi(2));
+        let found = floor(Bsdf::conductor(&constant(0.27), &constant(2.95)), cos.acos(), 0.0, 4);
+        close(found, [0.5 * (rs + rp), 0.5 * (rs - rp), 0.0, 0.0], 1e-6);
+    }
+}
+
+/// A white furnace has no polarisation to give: radiance 1 and nothing else, whatever absorbs nothing. Glass and a perfect
+/// mirror; every path through glass is polarised, and only their sum is not.
+#[test]
+fn a_polarised_furnace_is_white() {
+    for (bsdf, samples, bound) in
+        [(Bsdf::mirror(&constant(1.0)), 4, 1e-6), (Bsdf::dielectric(&constant(1.5)), 256, 2e-3)]
+    {
+        let mut stage = Stage::default();
+        stage.environments.push(Environment::constant(&constant(1.0)));
+        stage.sphere(DVec3::ZERO, 1.0, smooth(bsdf));
+        let camera = camera(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO, 0.3, 48);
+        close(stokes(&stage.build(), &camera, samples, 200), [1.0, 0.0, 0.0, 0.0], bound);
+    }
+}
+
+/// Two glass plates one after the other, under Brewster's angle, their planes of incidence at right angles: s of the first
+/// is p of the second, nothing arrives. Without polarisation a false R^2 does.
+#[test]
+fn crossed_brewster_reflections_are_dark() {
+    let angle = 1.5f64.atan();
+    let (r, view) = (2.0 * angle, DVec3::Y);
+    // Along y, deflected by pi - 2 angle within (y, z), then out of that plane.
+    let turn = std::f64::consts::PI - r;
+    let second = DVec3::new(0.0, turn.cos(), turn.sin());
+    let across = DVec3::X;
+    let third = second * turn.cos() + across * turn.sin();
+    let mut stage = Stage::default();
+    let plate = |stage: &mut Stage, at: DVec3, from: DVec3, to: DVec3| {
+        let normal = (to - from).normalize();
+        let place = DAffine3::from_rotation_translation(DQuat::from_rotation_arc(DVec3::Z, normal), at);
+        stage.solid(Shape::HalfSpace, place, smooth(Bsdf::dielectric(&constant(1.5))));
+    };
+    plate(&mut stage, DVec3::ZERO, view, second);
+    // Finite, so that the second plate does not swallow the first.
+    let normal = (third - second).normalize();
+    let place = DAffine3::from_rotation_translation(DQuat::from_rotation_arc(DVec3::Z, normal), second);
+    stage.surface(SurfaceShape::Disk { radius: 0.2 }, place, smooth(Bsdf::dielectric(&constant(1.5))));
+    let light = second + third * 2.0;
+    let place = DAffine3::from_rotation_translation(DQuat::from_rotation_arc(DVec3::Z, -third), light);
+    stage.surface(SurfaceShape::Disk { radius: 0.1 }, place, emitter(constant(1.0)));
+    let world = stage.build();
+    let camera = spot_camera(-view, DVec3::ZERO);
+    let polarised = stokes(&world, &camera, 4096, 8);
+    assert!(polarised[0] < 1e-6, "{polarised:?}");
+    let reflectance = Interface::new(angle.cos(), 1.5).reflectance();
+    let unpolarised = estimate(&render(&world, &camera, 4096, 8));
+    assert!((unpolarised.mean / (reflectance * reflectance) - 1.0).abs() < 0.2, "{unpolarised:?}");
+}
