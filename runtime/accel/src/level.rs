@@ -7,27 +7,35 @@ use arsc_geometry::Aabb;
 
 use crate::nearest::{Candidate, Target};
 use crate::query::{Extent, Mode, Query, View};
-use crate::solid::{SolidModel, SolidRay};
-use crate::strategies::{SolidTracer, Tracer};
+use crate::solid::{Nearness, SolidModel, SolidRay};
+use crate::strategies::{Members, SolidTracer, Tracer};
 use crate::transition::Transition;
 use crate::{AccelError, Strategy};
 
 /// Solids and how their parts are numbered.
 pub struct Solids {
     pub models: Vec<Arc<SolidModel>>,
-    /// First part of each solid, relative to the frame's first.
-    first_parts: Vec<u32>,
+    frames: Vec<SolidFrame>,
+}
+
+/// What rays need of a solid, side by side.
+#[derive(Clone, Copy, Debug)]
+struct SolidFrame {
+    nearness: Nearness,
+    tolerance: f64,
+    /// Relative to the first of the level.
+    first_part: u32,
 }
 
 impl Solids {
     fn new(models: Vec<Arc<SolidModel>>) -> Solids {
-        let mut first_parts = Vec::with_capacity(models.len());
-        let mut next = 0;
+        let mut frames = Vec::with_capacity(models.len());
+        let mut first_part = 0;
         for solid in &models {
-            first_parts.push(next);
-            next += solid.leaves.len() as u32;
+            frames.push(SolidFrame { nearness: solid.nearness, tolerance: solid.tolerance, first_part });
+            first_part += solid.leaves.len() as u32;
         }
-        Solids { models, first_parts }
+        Solids { models, frames }
     }
 
     /// The solids with their numbers.
@@ -35,22 +43,30 @@ impl Solids {
         (0..).zip(self.models.iter().map(|model| &**model))
     }
 
+    #[inline]
     pub fn near_ray(&self, solid: u32, query: &Query) -> SolidRay {
         let view = &query.view;
-        self.models[solid as usize].near_ray(view.origin, view.dir, query.limit() * view.scale)
+        self.frames[solid as usize].nearness.near_ray(view.origin, view.dir, query.limit() * view.scale)
+    }
+
+    #[inline]
+    pub fn tolerance(&self, solid: u32) -> f64 {
+        self.frames[solid as usize].tolerance
     }
 
     /// The query asks for another solid alone.
+    #[inline]
     pub fn is_left_out(&self, solid: u32, query: &Query) -> bool {
         query.only.is_some_and(|only| only != query.view.first_solid + solid)
     }
 
     /// What a transition along `ray` is in the scene.
+    #[inline]
     pub fn candidate(&self, solid: u32, transition: Transition, ray: &SolidRay, view: &View) -> Candidate {
         Candidate {
             t: (transition.t - ray.start) * view.inverse_scale,
-            part: view.first_part + self.first_parts[solid as usize] + transition.leaf,
-            tolerance: self.models[solid as usize].tolerance * view.inverse_scale,
+            part: view.first_part + self.frames[solid as usize].first_part + transition.leaf,
+            tolerance: self.frames[solid as usize].tolerance * view.inverse_scale,
             target: Target::Solid { solid: view.first_solid + solid, transition },
         }
     }
@@ -107,11 +123,63 @@ impl Level {
         }
     }
 
-    /// Ends a traversal; `mark` is where its collection began.
-    pub fn finish(&self, mark: usize, query: &mut Query) {
-        if let Tracer::Collect(collect) = &self.tracer {
-            collect.finish(&self.solids, mark, query);
+    /// Has Embree take the query through `scene`, whose solids are this level's and which lies in `extent`.
+    pub fn traverse<C: Callbacks<Query = Query>>(&self, scene: &EmbreeScene<C>, extent: &Extent, query: &mut Query) {
+        let mark = query.scratch.whole.mark();
+        match &self.tracer {
+            Tracer::Local(local) if local.members.has_several() => {
+                self.traverse_unions(&local.members, mark, scene, extent, query);
+            }
+            Tracer::Collect(collect) => {
+                pass(scene, extent, query);
+                collect.finish(&self.solids, mark, query);
+            }
+            _ => pass(scene, extent, query),
         }
+    }
+
+    /// The same where some solids are unions of leaves that Embree visits one by one.
+    fn traverse_unions<C: Callbacks<Query = Query>>(
+        &self,
+        members: &Members,
+        mark: usize,
+        scene: &EmbreeScene<C>,
+        extent: &Extent,
+        query: &mut Query,
+    ) {
+        // This may be an instance within a traversal of the world.
+        let outer = (query.gathering, query.tentative);
+        let nearest = query.nearest;
+        (query.gathering, query.tentative) = (query.mode == Mode::Collect, false);
+        pass(scene, extent, query);
+        if query.tentative && !query.blocked && !query.unclear {
+            // Whatever holds the start has its box here.
+            query.probing = true;
+            if let Some(segment) = query.view.segment(extent, 0.0) {
+                scene.occluded(&segment, query);
+            }
+            query.probing = false;
+            query.blocked = !query.unclear;
+        }
+        if query.unclear {
+            query.nearest = nearest;
+            (query.blocked, query.unclear, query.tentative, query.gathering) = (false, false, false, true);
+            pass(scene, extent, query);
+        }
+        members.finish(&self.solids, mark, query);
+        (query.gathering, query.tentative) = outer;
+    }
+}
+
+/// One traversal.
+#[inline]
+fn pass<C: Callbacks<Query = Query>>(scene: &EmbreeScene<C>, extent: &Extent, query: &mut Query) {
+    let limit = query.limit();
+    let Some(segment) = query.view.segment(extent, limit) else { return };
+    if query.mode == Mode::Occluded {
+        scene.occluded(&segment, query);
+    } else {
+        scene.intersect(&segment, query);
     }
 }
 
@@ -142,16 +210,7 @@ impl Prototype {
         if query.blocked {
             return;
         }
-        let mark = query.scratch.whole.mark();
-        let limit = query.limit();
-        if let Some(segment) = query.view.segment(&this.extent, limit) {
-            if query.mode == Mode::Occluded {
-                scene.occluded(&segment, query);
-            } else {
-                scene.intersect(&segment, query);
-            }
-        }
-        this.level.finish(mark, query);
+        this.level.traverse(scene, &this.extent, query);
     }
 }
 
@@ -170,6 +229,6 @@ impl Callbacks for Prototype {
 
     fn occluded(&self, query: &mut Query, _: GeometryId, primitive: u32, _: Option<GeometryId>) -> bool {
         self.level.visit(primitive, query);
-        query.blocked
+        query.ends()
     }
 }

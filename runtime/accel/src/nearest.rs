@@ -69,6 +69,18 @@ impl Nearest {
         self.best.map_or(self.t_max, |best| best.t + best.tolerance)
     }
 
+    /// The candidate is of the solid that the best is of, and within the tolerance of it.
+    #[inline]
+    pub fn coincides_within_solid(&self, candidate: &Candidate) -> bool {
+        let solid = |target: &Target| match *target {
+            Target::Solid { solid, .. } => Some(solid),
+            _ => None,
+        };
+        self.best.as_ref().is_some_and(|best| {
+            (best.t - candidate.t).abs() <= candidate.tolerance && solid(&best.target) == solid(&candidate.target)
+        })
+    }
+
     #[inline]
     pub fn offer(&mut self, candidate: Candidate) {
         if !(candidate.t > 0.0 && candidate.t < self.t_max) {

@@ -236,6 +236,14 @@ pub struct Query {
     pub view: View,
     pub nearest: Nearest,
     pub blocked: bool,
+    /// Blocked unless the ray turns out to start within a union.
+    pub tentative: bool,
+    /// What was found of some union does not hold: its leaves must be evaluated together.
+    pub unclear: bool,
+    /// Leaves of unions are only asked whether the ray starts in them, and nothing else is asked anything.
+    pub probing: bool,
+    /// Leaves of unions are only taken note of.
+    pub gathering: bool,
     /// Only this solid is asked, and no surface.
     pub only: Option<u32>,
     pub scratch: Box<Scratch>,
@@ -252,6 +260,10 @@ impl Query {
             view: View::world(ray),
             nearest: Nearest::new(ray.t_max),
             blocked: false,
+            tentative: false,
+            unclear: false,
+            gathering: false,
+            probing: false,
             only: None,
             scratch,
             tests: 0,
@@ -286,9 +298,18 @@ impl Query {
         self.nearest.limit()
     }
 
+    /// An occluded ray, or a probe, need go no further.
+    #[inline]
+    pub fn ends(&self) -> bool {
+        self.blocked || self.unclear || (self.tentative && !self.probing)
+    }
+
     /// What Embree is told after a primitive; `before` is the limit from before it.
     #[inline]
     pub fn step(&self, before: f64) -> Step {
+        if self.unclear {
+            return Step::Hit(f32::NEG_INFINITY);
+        }
         let now = self.limit();
         if now < before { Step::Hit(self.view.far(now)) } else { Step::Miss }
     }

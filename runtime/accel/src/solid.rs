@@ -23,7 +23,14 @@ pub struct SolidModel {
     /// Holds the solid; infinite where it may be.
     pub bounds: Aabb,
     pub tolerance: f64,
+    pub nearness: Nearness,
+}
+
+/// How far from a solid rays are taken up.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearness {
     center: DVec3,
+    /// Largest coordinate of an origin that is near.
     reach: f64,
 }
 
@@ -58,10 +65,19 @@ impl SolidModel {
         let tolerance = (magnitude * 2f64.powi(-40)).max(8.0 * leaf_error);
         let center = if bounds.is_finite() { bounds.center() } else { DVec3::ZERO };
         let materials = solid.leaves.iter().map(|leaf| leaf.material).collect();
-        Ok(SolidModel { leaves, materials, expression, bounds, tolerance, center, reach: NEAR * magnitude })
+        let nearness = Nearness { center, reach: NEAR * magnitude };
+        Ok(SolidModel { leaves, materials, expression, bounds, tolerance, nearness })
     }
 
     /// The ray with its origin brought near. `dir` is unit in the solid's frame.
+    pub fn near_ray(&self, origin: DVec3, dir: DVec3, t_max: f64) -> SolidRay {
+        self.nearness.near_ray(origin, dir, t_max)
+    }
+}
+
+impl Nearness {
+    /// The ray with its origin brought near. `dir` is unit in the solid's frame.
+    #[inline]
     pub fn near_ray(&self, origin: DVec3, dir: DVec3, t_max: f64) -> SolidRay {
         if origin.abs().max_element() <= self.reach {
             return SolidRay { origin, dir, start: 0.0, end: t_max };

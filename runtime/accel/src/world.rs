@@ -199,16 +199,7 @@ impl World {
         if query.blocked {
             return;
         }
-        let mark = query.scratch.whole.mark();
-        let limit = query.limit();
-        if let Some(segment) = query.view.segment(&this.extent, limit) {
-            if query.mode == Mode::Occluded {
-                scene.occluded(&segment, query);
-            } else {
-                scene.intersect(&segment, query);
-            }
-        }
-        this.level.finish(mark, query);
+        this.level.traverse(scene, &this.extent, query);
     }
 
     fn visit_open(&self, query: &mut Query) {
@@ -265,6 +256,7 @@ impl World {
     fn visit(&self, query: &mut Query, geometry: GeometryId, primitive: u32) {
         match self.kinds[geometry.0 as usize] {
             Kind::Solids => self.level.visit(primitive, query),
+            _ if query.probing => {}
             Kind::Instances => self.instances[self.placed[primitive as usize] as usize].visit(query),
             Kind::Flats => {
                 let surface = self.flats[primitive as usize];
@@ -312,7 +304,7 @@ impl Callbacks for World {
 
     fn occluded(&self, query: &mut Query, geometry: GeometryId, primitive: u32, _: Option<GeometryId>) -> bool {
         self.visit(query, geometry, primitive);
-        query.blocked
+        query.ends()
     }
 
     fn filter(&self, query: &mut Query, candidate: NativeCandidate) -> Step {
@@ -322,7 +314,9 @@ impl Callbacks for World {
     }
 
     fn filter_occluded(&self, query: &mut Query, candidate: NativeCandidate) -> bool {
-        self.visit_native(query, &candidate);
+        if !query.probing {
+            self.visit_native(query, &candidate);
+        }
         query.blocked
     }
 }

@@ -18,7 +18,7 @@ use glam::DVec3;
 use crate::expression::Token;
 
 pub use build::{append_outer, append_solid, core};
-pub use query::{Line, Window};
+pub use query::{Entry, Line, Window, entry, leaf_transitions, union_transitions};
 
 /// Expressions of at most so many leaves are kept as truth tables.
 pub const TABLE_LEAVES: usize = 6;
@@ -61,6 +61,12 @@ pub enum Kernel {
     Placed,
     /// The same, and worth keeping from one cell to the next.
     Costly,
+}
+
+impl CellLeaf {
+    pub fn new(leaf: u32, placed: &[Placed]) -> CellLeaf {
+        CellLeaf { leaf, kernel: Kernel::new(&placed[leaf as usize]) }
+    }
 }
 
 impl Kernel {
@@ -114,8 +120,7 @@ impl CellSet {
     fn push(&mut self, solid: u32, bounds: Aabb, leaves: &[u32], tokens: &[Token], placed: &[Placed]) -> u32 {
         let slot = |leaf: u32| leaves.binary_search(&leaf).map_or(0, |i| i as u32);
         let first_leaf = self.leaves.len() as u32;
-        let kernels = leaves.iter().map(|&leaf| CellLeaf { leaf, kernel: Kernel::new(&placed[leaf as usize]) });
-        self.leaves.extend(kernels);
+        self.leaves.extend(leaves.iter().map(|&leaf| CellLeaf::new(leaf, placed)));
         let (code, token_count) = if leaves.len() <= TABLE_LEAVES {
             (truth_table::table(tokens, slot), 0)
         } else {

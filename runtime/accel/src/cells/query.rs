@@ -9,8 +9,8 @@ use crate::cells::{Cell, CellLeaf, CellSet, Code, Kernel};
 use crate::coincidence::{Event, Plain, States, settle};
 use crate::counted::Counted;
 use crate::expression::eval;
-use crate::query::Scratch;
-use crate::solid::SolidModel;
+use crate::query::{Scratch, View};
+use crate::solid::{SolidModel, SolidRay};
 use crate::transition::Transition;
 
 /// From so many crossings on, values are kept up to date instead of computed anew at each.
@@ -56,7 +56,20 @@ impl Window {
     }
 }
 
-impl Line<'_> {
+impl<'a> Line<'a> {
+    /// `ray` is that of `view`, near the solid, whose number in its level is `number`.
+    #[inline]
+    pub fn new(solid: &'a SolidModel, number: u32, ray: &SolidRay, view: &View) -> Line<'a> {
+        Line {
+            solid,
+            origin: ray.origin,
+            dir: ray.dir,
+            inverse_dir: view.inverse_dir,
+            inverse_square: view.inverse_square,
+            key: u64::from(view.first_solid + number) << 32,
+        }
+    }
+
     /// The leaf is costly, and its crossings are not known yet.
     fn is_unsolved(&self, leaf: &CellLeaf, scratch: &Scratch) -> bool {
         matches!(leaf.kernel, Kernel::Costly) && !scratch.has_roots(self.key | u64::from(leaf.leaf))
@@ -237,6 +250,80 @@ fn several(
     walk(leaves, &events, window, Bits { states, table }, visit);
 }
 
+/// States of the leaves of a union.
+struct Count {
+    states: SmallVec<[bool; 64]>,
+    inside: usize,
+}
+
+impl States for Count {
+    fn get(&self, slot: u32) -> bool {
+        self.states[slot as usize]
+    }
+
+    fn flip(&mut self, slot: u32) {
+        let state = &mut self.states[slot as usize];
+        *state = !*state;
+        self.inside = if *state { self.inside + 1 } else { self.inside - 1 };
+    }
+
+    fn value(&self) -> bool {
+        self.inside > 0
+    }
+}
+
+/// Calls `visit` for every transition of the union of `leaves` in the window, in order, until it returns false. Other leaves
+/// of the union are not met in the window.
+pub fn union_transitions(
+    leaves: &[CellLeaf],
+    line: &Line,
+    window: &Window,
+    scratch: &mut Scratch,
+    visit: impl FnMut(Transition) -> bool,
+) {
+    let mut events = Events::new();
+    let mut states = SmallVec::with_capacity(leaves.len());
+    gather(leaves, 0, line, window, scratch, &mut events, |_, state| states.push(state));
+    let inside = states.iter().filter(|&&state| state).count();
+    walk(leaves, &events, window, Count { states, inside }, visit);
+}
+
+/// Where a ray enters a leaf.
+pub enum Entry {
+    Missed,
+    At {
+        t: f64,
+        face: u32,
+    },
+    /// It starts in the leaf, or passes through less than the tolerance.
+    Unclear,
+}
+
+/// The first crossing of a bounded leaf that the ray, which goes from `low` to `high`, does not start in.
+#[inline]
+pub fn entry(leaf: &CellLeaf, line: &Line, window: &Window, scratch: &mut Scratch) -> Entry {
+    let (t0, face, t1) = match line.meet(leaf, scratch) {
+        Met::Span(None) => return Entry::Missed,
+        Met::Span(Some(span)) => (span.t0, span.f0, span.t1),
+        Met::List(crossings) => {
+            let roots = crossings.t();
+            let passed = roots.iter().take_while(|&&t| t <= window.low).count();
+            // Even: outside. The pair that comes next, or the one that is about to end.
+            let Some([t0, t1]) = roots.get(passed & !1..).and_then(|rest| rest.first_chunk()) else {
+                return Entry::Missed;
+            };
+            (*t0, crossings.face(passed & !1), *t1)
+        }
+    };
+    if t1 <= window.low || t0 > window.high {
+        Entry::Missed
+    } else if t0 <= window.low || t1 <= t0 + window.tolerance {
+        Entry::Unclear
+    } else {
+        Entry::At { t: t0, face }
+    }
+}
+
 /// Goes along sorted events, cluster by cluster.
 #[inline]
 fn walk(
@@ -272,6 +359,18 @@ fn walk(
         inside = after;
         rest = later;
     }
+}
+
+/// Calls `visit` for every transition of a solid of one leaf in the window, in order, until it returns false.
+#[inline]
+pub fn leaf_transitions(
+    leaf: &CellLeaf,
+    line: &Line,
+    window: &Window,
+    scratch: &mut Scratch,
+    visit: impl FnMut(Transition) -> bool,
+) {
+    single(leaf, false, line, window, scratch, visit);
 }
 
 /// One leaf, or (`negated`) its complement: its crossings are the transitions, pairs within the tolerance cancel.

@@ -6,7 +6,7 @@ use crate::cells::{self, CellSet, Line, Window};
 use crate::level::Solids;
 use crate::query::{Extent, Mode, Query, slab};
 use crate::solid::SolidRay;
-use crate::strategies::{SolidTracer, oracle};
+use crate::strategies::{Members, SolidTracer, oracle};
 
 /// A solid, or the part of it beyond its core, that Embree cannot hold.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +20,8 @@ enum Open {
 #[derive(Default)]
 pub struct Local {
     cells: CellSet,
+    /// Primitives after the cells.
+    pub members: Members,
     outer: CellSet,
     open: Vec<Open>,
 }
@@ -31,7 +33,7 @@ impl Local {
             let core = cells::core(solid);
             if !core.is_empty() && !Extent::admits(&core) {
                 local.open.push(Open::Whole { solid: number });
-            } else {
+            } else if !local.members.admit(number, solid) {
                 cells::append_solid(&mut local.cells, number, solid);
                 if let Some((cell, core)) = cells::append_outer(&mut local.outer, number, solid) {
                     local.open.push(Open::Outer { cell, core });
@@ -74,15 +76,8 @@ impl Local {
         }
         query.tests += 1;
         let solid = &solids.models[cell.solid as usize];
-        let window = Window { low, high, start: ray.start, tolerance: solid.tolerance };
-        let line = Line {
-            solid,
-            origin: ray.origin,
-            dir: ray.dir,
-            inverse_dir: view.inverse_dir,
-            inverse_square: view.inverse_square,
-            key: u64::from(view.first_solid + cell.solid) << 32,
-        };
+        let window = Window { low, high, start: ray.start, tolerance: solids.tolerance(cell.solid) };
+        let line = Line::new(solid, cell.solid, ray, &view);
         if query.mode == Mode::Collect {
             let mut found = vec![];
             set.transitions(cell, &line, &window, &mut query.scratch, true, |transition| found.push(transition));
@@ -101,15 +96,18 @@ impl Local {
 
 impl SolidTracer for Local {
     fn primitive_count(&self) -> usize {
-        self.cells.cells.len()
+        self.cells.cells.len() + self.members.len()
     }
 
-    fn primitive_bounds(&self, _: &Solids, primitive: u32) -> Aabb {
-        self.cells.cells[primitive as usize].bounds
+    fn primitive_bounds(&self, solids: &Solids, primitive: u32) -> Aabb {
+        match self.cells.cells.get(primitive as usize) {
+            Some(cell) => cell.bounds,
+            None => self.members.bounds(solids, primitive - self.cells.cells.len() as u32),
+        }
     }
 
     fn bytes(&self) -> usize {
-        self.cells.bytes() + self.outer.bytes()
+        self.cells.bytes() + self.members.bytes() + self.outer.bytes()
     }
 
     fn visit_open(&self, solids: &Solids, query: &mut Query) {
@@ -134,7 +132,12 @@ impl SolidTracer for Local {
     }
 
     fn visit(&self, solids: &Solids, primitive: u32, query: &mut Query) {
-        let cell = &self.cells.cells[primitive as usize];
+        let Some(cell) = self.cells.cells.get(primitive as usize) else {
+            return self.members.visit(solids, primitive - self.cells.cells.len() as u32, query);
+        };
+        if query.probing {
+            return;
+        }
         let ray = solids.near_ray(cell.solid, query);
         let stretch = slab(&cell.bounds, ray.origin, query.view.inverse_dir);
         self.visit_cell(solids, &self.cells, primitive, &ray, stretch, query);

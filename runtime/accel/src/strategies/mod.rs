@@ -21,6 +21,7 @@ mod hybrid;
 mod kd;
 mod kd_tree;
 mod local;
+mod members;
 mod native;
 mod operators;
 pub mod oracle;
@@ -39,6 +40,7 @@ use local::Local;
 use native::Native;
 use whole::{PerSolid, Structure};
 
+pub use members::Members;
 pub use whole::WholeScratch;
 
 /// Room around boxes, in tolerances of the solid.
