@@ -44,7 +44,7 @@ fn assert_close(found: &[f64], expected: &[f64]) {
 
 #[test]
 fn csv_rows_are_the_closed_form() {
-    for strategy in ["local", "native", "collect", "tree", "kd", "hybrid"] {
+    for strategy in ["local", "native", "collect", "tree", "kd", "hybrid", "incremental"] {
         let run = probe(RAYS, &["--format", "csv", "--csg", strategy]);
         assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
         let text = stdout(&run);

@@ -1,7 +1,7 @@
 //! Strategy against strategy on random trees and rays, and all against point membership.
 //!
 //! 260 trees, a friendly and a hostile family (coincident faces, tangents, rays within faces, starts inside, mirrored and
-//! sheared maps, scales from 1e-3 to 1e6), 4 000 rays each: nearest hit, occlusion and all intervals of every strategy must be
+//! sheared maps, scales from 1e-3 to 1e6), 2 000 rays each: nearest hit, occlusion and all intervals of every strategy must be
 //! those of the oracle, and the middle of every interval and gap must be inside or outside by plain membership. A difference
 //! is excused only if the ray is near a boundary: moved by a billionth of the scene it gets another answer from the oracle
 //! itself. Such rays are counted and bounded. Seeds are fixed; nothing here is statistical.
@@ -19,7 +19,7 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
 const TREES: u64 = 260;
-const RAYS: usize = 4000;
+const RAYS: usize = 2000;
 /// Rays excused as near a boundary, of all.
 const MOST_EXCUSED: f64 = 1e-3;
 
@@ -248,7 +248,7 @@ struct Tally {
 fn check(seed: u64) -> Tally {
     let (case, mut rng) = case(seed);
     let geometry = SceneGeometry { solids: vec![case.solid.clone()], ..SceneGeometry::default() };
-    let build = |strategy| Scene::build(geometry.clone(), BuildOptions { strategy }).unwrap();
+    let build = |strategy| Scene::build(geometry.clone(), BuildOptions::from(strategy)).unwrap();
     let oracle = build(Strategy::Oracle);
     let scenes = Strategy::ALL.map(|strategy| (strategy, build(strategy)));
     let place = |leaf: &CsgLeaf| Placed::new(leaf.shape.clone(), leaf.world_from_object).unwrap();

@@ -15,11 +15,20 @@ pub enum Strategy {
     Kd,
     /// `Kd` for solids with mesh operands, else `Tree`.
     Hybrid,
+    /// `Kd`, evaluating only what changes along the ray.
+    Incremental,
 }
 
 impl Strategy {
-    pub const ALL: [Strategy; 6] =
-        [Strategy::Local, Strategy::Native, Strategy::Collect, Strategy::Tree, Strategy::Kd, Strategy::Hybrid];
+    pub const ALL: [Strategy; 7] = [
+        Strategy::Local,
+        Strategy::Native,
+        Strategy::Collect,
+        Strategy::Tree,
+        Strategy::Kd,
+        Strategy::Hybrid,
+        Strategy::Incremental,
+    ];
 
     /// As scripts write it.
     pub const fn name(self) -> &'static str {
@@ -30,6 +39,7 @@ impl Strategy {
             Strategy::Tree => "tree",
             Strategy::Kd => "kd",
             Strategy::Hybrid => "hybrid",
+            Strategy::Incremental => "incremental",
         }
     }
 }

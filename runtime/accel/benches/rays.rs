@@ -179,7 +179,7 @@ fn main() {
         }
         let build = |strategy| {
             let geometry = SceneGeometry { solids: make(), ..SceneGeometry::default() };
-            Scene::build(geometry, BuildOptions { strategy }).expect("the scene can be built")
+            Scene::build(geometry, BuildOptions::from(strategy)).expect("the scene can be built")
         };
         let local = build(Strategy::Local);
         let (speed, tests) = measure(&local, eye, target);

@@ -26,14 +26,23 @@ pub enum Strategy {
     Kd,
     /// `Kd` for solids with meshes as operands, `Tree` for the others.
     Hybrid,
+    /// `Kd` that evaluates only what changes along the ray: the strongest opponent of `Local`.
+    Incremental,
     /// Every leaf, and the whole expression at every crossing: what tests compare the others with.
     Oracle,
 }
 
 impl Strategy {
     /// Those that a script may name.
-    pub const ALL: [Strategy; 6] =
-        [Strategy::Local, Strategy::Native, Strategy::Collect, Strategy::Tree, Strategy::Kd, Strategy::Hybrid];
+    pub const ALL: [Strategy; 7] = [
+        Strategy::Local,
+        Strategy::Native,
+        Strategy::Collect,
+        Strategy::Tree,
+        Strategy::Kd,
+        Strategy::Hybrid,
+        Strategy::Incremental,
+    ];
 
     /// As scripts and the command line write it.
     pub fn name(self) -> &'static str {
@@ -44,6 +53,7 @@ impl Strategy {
             Strategy::Tree => "tree",
             Strategy::Kd => "kd",
             Strategy::Hybrid => "hybrid",
+            Strategy::Incremental => "incremental",
             Strategy::Oracle => "oracle",
         }
     }

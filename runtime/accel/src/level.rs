@@ -10,7 +10,7 @@ use crate::query::{Extent, Mode, Query, View};
 use crate::solid::{Nearness, SolidModel, SolidRay};
 use crate::strategies::{Members, SolidTracer, Tracer};
 use crate::transition::Transition;
-use crate::{AccelError, Strategy};
+use crate::{AccelError, Budget, Strategy};
 
 /// Solids and how their parts are numbered.
 pub struct Solids {
@@ -36,6 +36,12 @@ impl Solids {
             first_part += solid.leaves.len() as u32;
         }
         Solids { models, frames }
+    }
+
+    /// What each solid gets of a budget for all.
+    pub fn shares(&self, budget: &Budget) -> impl Iterator<Item = Budget> {
+        let all: usize = self.models.iter().map(|solid| solid.leaves.len()).sum();
+        self.models.iter().map(move |solid| budget.share(solid.leaves.len(), all))
     }
 
     /// The solids with their numbers.
@@ -79,9 +85,9 @@ pub struct Level {
 }
 
 impl Level {
-    pub fn new(models: Vec<Arc<SolidModel>>, strategy: Strategy) -> Level {
+    pub fn new(models: Vec<Arc<SolidModel>>, strategy: Strategy, budget: &Budget) -> Level {
         let solids = Solids::new(models);
-        let tracer = Tracer::build(&solids, strategy);
+        let tracer = Tracer::build(&solids, strategy, budget);
         Level { solids, tracer }
     }
 
@@ -194,8 +200,9 @@ impl Prototype {
         device: &Device,
         solid: Arc<SolidModel>,
         strategy: Strategy,
+        budget: &Budget,
     ) -> Result<EmbreeScene<Prototype>, AccelError> {
-        let level = Level::new(vec![solid], strategy);
+        let level = Level::new(vec![solid], strategy, budget);
         let extent = Extent::new(level.bounds());
         let primitives = level.primitive_count();
         let mut builder = SceneBuilder::new(device, Arc::new(Prototype { level, extent }), BuildQuality::High)?;

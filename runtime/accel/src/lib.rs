@@ -4,6 +4,7 @@
 //! [`Scene`] that answers: the nearest hit, occlusion, and all intervals along a ray. Positions and distances
 //! are double precision and carry error bounds; there is no fixed epsilon. Materials are opaque numbers here.
 
+mod budget;
 mod cells;
 mod coincidence;
 mod counted;
@@ -25,6 +26,7 @@ mod world;
 use expression::Expression;
 
 pub use arsc_geometry::{Aabb, Ray, Shape, TriangleMesh};
+pub use budget::Budget;
 pub use error::AccelError;
 pub use geometry::{Csg, CsgLeaf, Instance, MaterialIndex, SceneGeometry, Solid, Strategy, Surface, SurfaceShape};
 pub use hit::{AreaSample, Hit, Interval, Parametrization, PartId};

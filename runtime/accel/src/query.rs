@@ -247,7 +247,7 @@ pub struct Query {
     /// Only this solid is asked, and no surface.
     pub only: Option<u32>,
     pub scratch: Box<Scratch>,
-    /// Cells (or whole solids) and surfaces that were tested.
+    /// Leaves (in every cell anew) and surfaces that were tested.
     pub tests: u32,
 }
 

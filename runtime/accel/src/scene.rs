@@ -20,7 +20,8 @@ use crate::surfaces::SurfaceModel;
 use crate::transition::Transition;
 use crate::world::{InstanceModel, World, device};
 use crate::{
-    AccelError, AreaSample, Hit, Interval, MaterialIndex, Parametrization, PartId, SceneGeometry, Solid, Strategy,
+    AccelError, AreaSample, Budget, Hit, Interval, MaterialIndex, Parametrization, PartId, SceneGeometry, Solid,
+    Strategy,
 };
 
 /// Parts are numbered in 32 bits, with room for what is added to them.
@@ -34,6 +35,13 @@ thread_local! {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BuildOptions {
     pub strategy: Strategy,
+    pub budget: Budget,
+}
+
+impl From<Strategy> for BuildOptions {
+    fn from(strategy: Strategy) -> BuildOptions {
+        BuildOptions { strategy, ..BuildOptions::default() }
+    }
 }
 
 /// What a build made.
@@ -105,8 +113,9 @@ impl Scene {
             surfaces.push(model);
         }
         let before = device()?.bytes();
-        let (instances, shared_cells, shared_bytes) = plan.add_instances(&geometry, options.strategy)?;
-        let level = Level::new(solids, options.strategy);
+        let (instances, shared_cells, shared_bytes) = plan.add_instances(&geometry, &options)?;
+        let share = options.budget.share(geometry.solids.iter().map(|s| s.leaves.len()).sum(), leaf_count(&geometry));
+        let level = Level::new(solids, options.strategy, &share);
         let (cells, own_bytes) = (level.cell_count() + shared_cells, level.bytes() + shared_bytes);
         let world = World::build(level, surfaces, first_surface_part, instances)?;
         let stats = BuildStats {
@@ -179,7 +188,7 @@ impl Scene {
         self.trace(Mode::Occluded, ray, None, |query| query.blocked).unwrap_or(false)
     }
 
-    /// Primitives (cells, whole solids, surfaces) that [`Scene::intersect`] tests for this ray.
+    /// Leaves (in every cell anew) and surfaces that [`Scene::intersect`] tests for this ray.
     pub fn count_tests(&self, ray: &Ray) -> u32 {
         self.trace(Mode::Nearest, ray, None, |query| query.tests).unwrap_or(0)
     }
@@ -364,6 +373,14 @@ impl Scene {
     }
 }
 
+/// Leaves of all solids, shared ones once.
+fn leaf_count(geometry: &SceneGeometry) -> usize {
+    let own: usize = geometry.solids.iter().map(|solid| solid.leaves.len()).sum();
+    let shared: HashMap<*const Solid, usize> =
+        geometry.instances.iter().map(|i| (Arc::as_ptr(&i.solid), i.solid.leaves.len())).collect();
+    own + shared.values().sum::<usize>()
+}
+
 /// Parts and solids as they are numbered.
 #[derive(Default)]
 struct Plan {
@@ -401,8 +418,9 @@ impl Plan {
     fn add_instances(
         &mut self,
         geometry: &SceneGeometry,
-        strategy: Strategy,
+        options: &BuildOptions,
     ) -> Result<(Vec<InstanceModel>, usize, usize), AccelError> {
+        let leaves = leaf_count(geometry);
         let mut shared: HashMap<*const Solid, Arc<EmbreeScene<Prototype>>> = HashMap::new();
         let mut instances = Vec::with_capacity(geometry.instances.len());
         let (mut cells, mut bytes) = (0, 0);
@@ -413,7 +431,8 @@ impl Plan {
                 Some(prototype) => prototype.clone(),
                 None => {
                     let model = Arc::new(SolidModel::new(&instance.solid, solid)?);
-                    let prototype = Arc::new(Prototype::build(device()?, model, strategy)?);
+                    let share = options.budget.share(model.leaves.len(), leaves);
+                    let prototype = Arc::new(Prototype::build(device()?, model, options.strategy, &share)?);
                     let level = &prototype.callbacks().level;
                     cells += level.cell_count();
                     bytes += level.bytes();

@@ -49,7 +49,7 @@ fn tree(rng: &mut Pcg64, range: std::ops::Range<u32>) -> Csg {
 
 fn scene(tree: Csg, leaves: &[CsgLeaf], strategy: Strategy) -> Scene {
     let solids = vec![Solid { tree, leaves: leaves.to_vec() }];
-    Scene::build(SceneGeometry { solids, ..SceneGeometry::default() }, BuildOptions { strategy }).unwrap()
+    Scene::build(SceneGeometry { solids, ..SceneGeometry::default() }, BuildOptions::from(strategy)).unwrap()
 }
 
 fn length(intervals: &[Interval]) -> f64 {
@@ -124,7 +124,7 @@ fn instances_are_written_out_copies() {
             Solid { tree: tree.clone(), leaves: moved.collect() }
         });
         let strategy = Strategy::ALL[case % Strategy::ALL.len()];
-        let build = |geometry| Scene::build(geometry, BuildOptions { strategy }).unwrap();
+        let build = |geometry| Scene::build(geometry, BuildOptions::from(strategy)).unwrap();
         let instanced = build(SceneGeometry { instances: instances.collect(), ..SceneGeometry::default() });
         let direct = build(SceneGeometry { solids: written_out.collect(), ..SceneGeometry::default() });
         for _ in 0..500 {

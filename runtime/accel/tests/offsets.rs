@@ -27,7 +27,7 @@ fn rotation(rng: &mut Pcg64) -> DMat3 {
 fn scenes(geometry: SceneGeometry) -> Vec<Scene> {
     let differ = !geometry.solids.is_empty() || !geometry.instances.is_empty();
     let strategies = if differ { &Strategy::ALL[..] } else { &Strategy::ALL[..1] };
-    let build = |&strategy| Scene::build(geometry.clone(), BuildOptions { strategy }).unwrap();
+    let build = |&strategy| Scene::build(geometry.clone(), BuildOptions::from(strategy)).unwrap();
     strategies.iter().map(build).collect()
 }
 

@@ -27,7 +27,7 @@ fn minus(a: Csg, b: Csg) -> Csg {
 
 /// The scene under every strategy.
 fn scenes(geometry: SceneGeometry) -> Vec<Scene> {
-    let build = |strategy: &Strategy| Scene::build(geometry.clone(), BuildOptions { strategy: *strategy }).unwrap();
+    let build = |strategy: &Strategy| Scene::build(geometry.clone(), BuildOptions::from(*strategy)).unwrap();
     Strategy::ALL.iter().chain(&[Strategy::Oracle]).map(build).collect()
 }
 
@@ -50,6 +50,30 @@ fn sphere_is_hit_from_outside_and_inside() {
         assert!(scene.intersect(&hit.spawn(DVec3::NEG_X)).is_none());
         assert!(!scene.occluded(&Ray { origin: DVec3::ZERO, dir: DVec3::Z, t_max: 0.99 }));
         assert!(scene.occluded(&Ray { origin: DVec3::ZERO, dir: DVec3::Z, t_max: 1.01 }));
+    }
+}
+
+/// Operands that the tree does not use, and trees that are nothing or everything.
+#[test]
+fn constant_trees_meet_nothing() {
+    let leaves = vec![sphere(DVec3::ZERO, 1.0, 0), sphere(DVec3::X, 1.0, 1)];
+    let everything = || Csg::Intersection(vec![]);
+    let trees = [
+        Csg::Union(vec![]),
+        everything(),
+        minus(Csg::Union(vec![]), Csg::Leaf(0)),
+        Csg::Union(vec![everything(), Csg::Leaf(1)]),
+    ];
+    let ray = Ray::new(DVec3::new(-3.0, 0.0, 0.0), DVec3::X);
+    for tree in trees {
+        for scene in scenes(solid(tree.clone(), leaves.clone())) {
+            assert!(scene.intersect(&ray).is_none() && !scene.occluded(&ray), "{tree:?}");
+        }
+    }
+    for scene in scenes(solid(minus(everything(), Csg::Leaf(0)), leaves)) {
+        let hit = scene.intersect(&ray).expect("the void");
+        assert!((hit.t - 2.0).abs() < 1e-14 && close(hit.ng, DVec3::X), "{hit:?}");
+        assert_eq!(scene.intervals(&ray).len(), 2);
     }
 }
 

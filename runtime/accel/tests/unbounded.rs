@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec3};
 
 fn scene(leaves: Vec<CsgLeaf>, tree: Csg, strategy: Strategy) -> Scene {
     let geometry = SceneGeometry { solids: vec![Solid { tree, leaves }], ..SceneGeometry::default() };
-    Scene::build(geometry, BuildOptions { strategy }).expect("a scene")
+    Scene::build(geometry, BuildOptions::from(strategy)).expect("a scene")
 }
 
 fn leaf(shape: Shape, world_from_object: DAffine3) -> CsgLeaf {

@@ -103,7 +103,7 @@ impl<'a> Stage<'a> {
 
 /// The scene of `geometry` for tracing.
 pub fn build(geometry: SceneGeometry, strategy: Strategy) -> Result<Scene, AssemblyError> {
-    Scene::build(geometry, BuildOptions { strategy }).map_err(|source| AssemblyError::Accel(Box::new(source)))
+    Scene::build(geometry, BuildOptions::from(strategy)).map_err(|source| AssemblyError::Accel(Box::new(source)))
 }
 
 /// Bounds of a Boolean tree from those of its leaves: not the tightest, never too tight.
@@ -136,5 +136,6 @@ pub fn accel_strategy(strategy: arsc_ir::Strategy) -> Strategy {
         arsc_ir::Strategy::Tree => Strategy::Tree,
         arsc_ir::Strategy::Kd => Strategy::Kd,
         arsc_ir::Strategy::Hybrid => Strategy::Hybrid,
+        arsc_ir::Strategy::Incremental => Strategy::Incremental,
     }
 }

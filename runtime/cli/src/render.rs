@@ -29,6 +29,8 @@ pub enum Csg {
     Kd,
     /// `kd` for solids with mesh operands, `tree` for the others
     Hybrid,
+    /// As `kd`, but only what changes along the ray is evaluated
+    Incremental,
 }
 
 impl From<Csg> for arsc_accel::Strategy {
@@ -40,6 +42,7 @@ impl From<Csg> for arsc_accel::Strategy {
             Csg::Tree => arsc_accel::Strategy::Tree,
             Csg::Kd => arsc_accel::Strategy::Kd,
             Csg::Hybrid => arsc_accel::Strategy::Hybrid,
+            Csg::Incremental => arsc_accel::Strategy::Incremental,
         }
     }
 }

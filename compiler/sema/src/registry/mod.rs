@@ -222,6 +222,7 @@ pub fn choices(ty: &Type) -> &'static [(&'static str, Value)] {
         (Strategy::Tree.name(), Value::Strategy(Strategy::Tree)),
         (Strategy::Kd.name(), Value::Strategy(Strategy::Kd)),
         (Strategy::Hybrid.name(), Value::Strategy(Strategy::Hybrid)),
+        (Strategy::Incremental.name(), Value::Strategy(Strategy::Incremental)),
     ];
     use arsc_ir::{Exposure, Strategy};
     match ty {

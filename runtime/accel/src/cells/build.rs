@@ -2,6 +2,7 @@
 
 use arsc_geometry::Aabb;
 
+use crate::Budget;
 use crate::cells::dominance;
 use crate::cells::split::{best_split, halves, state};
 use crate::cells::{CellSet, PAD, TABLE_LEAVES, truth_table};
@@ -34,13 +35,13 @@ struct Work {
 
 /// Adds the cells of a solid. Solids whose box is infinite are cut within the hull of their bounded leaves; what is
 /// beyond it is [`append_outer`]'s.
-pub fn append_solid(set: &mut CellSet, number: u32, solid: &SolidModel) {
+pub fn append_solid(set: &mut CellSet, number: u32, solid: &SolidModel, budget: &Budget) {
     let Expression::Tokens(tokens) = &solid.expression else { return };
     let region = core(solid);
     if region.is_empty() {
         return;
     }
-    let mut builder = Builder::new(set, number, solid);
+    let mut builder = Builder::new(set, number, solid, budget);
     builder.run(Work { region, tokens: tokens.clone(), gainless: 0, depth: 0 });
 }
 
@@ -89,19 +90,22 @@ struct Builder<'a> {
     pad: f64,
     /// States of leaves in the region at hand; `None` is boundary. Only entries of the region's leaves are current.
     states: Vec<Option<bool>>,
+    /// Cells may still be cut so often: every cut makes one more, until it is found to be empty.
     cells_left: usize,
+    bytes_left: usize,
     work_left: u64,
 }
 
 impl<'a> Builder<'a> {
-    fn new(set: &'a mut CellSet, number: u32, solid: &'a SolidModel) -> Builder<'a> {
+    fn new(set: &'a mut CellSet, number: u32, solid: &'a SolidModel, budget: &Budget) -> Builder<'a> {
         Builder {
             set,
             number,
             solid,
             pad: PAD * solid.tolerance,
             states: vec![None; solid.leaves.len()],
-            cells_left: 1024 + 64 * solid.leaves.len(),
+            cells_left: (1024 + 64 * solid.leaves.len()).min(budget.cells.saturating_sub(1)),
+            bytes_left: budget.bytes,
             work_left: LEAST_WORK + WORK_PER_LEAF * solid.leaves.len() as u64,
         }
     }
@@ -109,13 +113,20 @@ impl<'a> Builder<'a> {
     fn run(&mut self, first: Work) {
         let mut stack = vec![first];
         while let Some(mut work) = stack.pop() {
-            let Some(leaves) = self.simplify(&mut work) else { continue };
+            let Some(leaves) = self.simplify(&mut work) else {
+                self.cells_left = self.cells_left.saturating_add(1);
+                continue;
+            };
             match self.cut(&work, &leaves) {
-                Some((low, high)) => stack.extend([high, low]),
+                Some((low, high)) => {
+                    self.cells_left = self.cells_left.saturating_sub(1);
+                    stack.extend([high, low]);
+                }
                 None => {
+                    let before = self.set.bytes();
                     let bounds = work.region.dilated(self.solid.tolerance);
                     self.set.push(self.number, bounds, &leaves, &work.tokens, &self.solid.leaves);
-                    self.cells_left = self.cells_left.saturating_sub(1);
+                    self.bytes_left = self.bytes_left.saturating_sub(self.set.bytes() - before);
                 }
             }
         }
@@ -222,7 +233,10 @@ impl<'a> Builder<'a> {
 
     /// Two halves, if cutting pays.
     fn cut(&mut self, work: &Work, leaves: &[u32]) -> Option<(Work, Work)> {
-        if leaves.len() == 1 || work.depth >= MAX_DEPTH || self.cells_left == 0 || self.work_left == 0 {
+        if leaves.len() == 1 || work.depth >= MAX_DEPTH {
+            return None;
+        }
+        if self.cells_left == 0 || self.bytes_left == 0 || self.work_left == 0 {
             return None;
         }
         self.spend(SPLIT_WORK * leaves.len() as u64);

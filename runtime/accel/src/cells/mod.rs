@@ -70,7 +70,7 @@ impl CellLeaf {
 }
 
 impl Kernel {
-    fn new(placed: &Placed) -> Kernel {
+    pub fn new(placed: &Placed) -> Kernel {
         match (placed.direct(), placed.shape()) {
             (Some(&Direct::Ball { center, radius }), _) => Kernel::Ball { center, radius },
             (Some(&Direct::Box { min, max }), _) => Kernel::Box { min, max },
@@ -95,6 +95,13 @@ pub struct CellSet {
 pub enum Code<'a> {
     Table(u64),
     Tokens(&'a [Token]),
+}
+
+impl Cell {
+    #[inline]
+    pub fn leaf_count(&self) -> u32 {
+        self.leaf_count
+    }
 }
 
 impl CellSet {

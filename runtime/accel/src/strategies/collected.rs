@@ -5,7 +5,7 @@ use arsc_geometry::Aabb;
 use crate::level::Solids;
 use crate::query::Query;
 use crate::strategies::leaf_boxes;
-use crate::strategies::operators::Operators;
+use crate::strategies::operators::{Evaluation, Operators};
 use crate::strategies::whole::evaluate;
 
 /// A leaf: the numbers of its solid and of the leaf.
@@ -27,7 +27,7 @@ impl Collected {
             let boxes = (0..).zip(boxes).filter(|(_, bounds)| !bounds.is_empty());
             boxed.extend(boxes.map(|(leaf, bounds)| ((number, leaf), bounds)));
             collected.everywhere.extend(everywhere.into_iter().map(|leaf| (number, leaf)));
-            collected.operators.push(Operators::new(solid));
+            collected.operators.push(Operators::new(solid, Evaluation::Whole));
         }
         (collected, boxed)
     }
@@ -48,12 +48,11 @@ impl Collected {
             }
             let model = &*solids.models[solid as usize];
             let ray = model.near_ray(query.view.origin, query.view.dir, end * query.view.scale);
-            evaluate(solids, solid, &self.operators[solid as usize], &ray, query, |scratch| {
+            evaluate(solids, solid, &self.operators[solid as usize], &ray, query, |line, scratch| {
                 for same in group.chunk_by(|a, b| a == b) {
-                    scratch.gathered.cross(model, same[0].1, &ray, ray.start, ray.end);
+                    scratch.gathered.cross(line, same[0].1);
                 }
             });
-            query.tests += group.len() as u32;
         }
         met.truncate(mark);
         query.scratch.whole.met = met;

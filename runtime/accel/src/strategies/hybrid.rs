@@ -2,9 +2,10 @@
 //! others are traced through the operator tree with its boxes; plain geometry is Embree's own. The thesis had to: its
 //! operator tree could not be traced with meshes.
 
+use crate::Budget;
 use crate::solid::SolidModel;
 use crate::strategies::whole::Structure;
 
-pub fn structure(solid: &SolidModel) -> Structure {
-    Structure::tree(solid)
+pub fn structure(solid: &SolidModel, budget: &Budget) -> Structure {
+    Structure::tree(solid, budget)
 }

@@ -1,13 +1,16 @@
 //! A KD tree over the leaves of each solid, which is one user primitive of Embree (thesis, section 3.5.3; P. Zajíček's
 //! thesis of 2012 applies KD trees to CSG). The leaves in the cells that the ray passes are crossed, all of them, and
 //! then the whole operator tree is evaluated.
+//!
+//! `incremental` is the same with an evaluation that no more looks at the whole tree.
 
 use arsc_geometry::Aabb;
 
-use crate::solid::{SolidModel, SolidRay};
+use crate::Budget;
+use crate::solid::SolidModel;
+use crate::strategies::gather::{Gathered, SolidLine};
 use crate::strategies::kd_tree::{KdTree, Mailbox};
 use crate::strategies::leaf_boxes;
-use crate::strategies::operators::Gathered;
 
 pub struct SolidKd {
     tree: KdTree,
@@ -16,9 +19,9 @@ pub struct SolidKd {
 }
 
 impl SolidKd {
-    pub fn new(solid: &SolidModel) -> SolidKd {
+    pub fn new(solid: &SolidModel, budget: &Budget) -> SolidKd {
         let (boxes, everywhere): (Vec<Aabb>, Vec<u32>) = leaf_boxes(solid);
-        SolidKd { tree: KdTree::build(&boxes), everywhere }
+        SolidKd { tree: KdTree::build(&boxes, budget), everywhere }
     }
 
     pub fn bytes(&self) -> usize {
@@ -30,13 +33,9 @@ impl SolidKd {
     }
 
     /// Crosses the leaves that the ray may meet between its start and its end.
-    pub fn gather(&self, solid: &SolidModel, ray: &SolidRay, mailbox: &mut Mailbox, gathered: &mut Gathered) {
-        for &leaf in &self.everywhere {
-            gathered.cross(solid, leaf, ray, ray.start, ray.end);
-        }
-        let range = (ray.start, ray.end);
-        self.tree.visit(ray.origin, ray.dir.recip(), range, mailbox, |leaf| {
-            gathered.cross(solid, leaf, ray, ray.start, ray.end);
-        });
+    pub fn gather(&self, line: &SolidLine, mailbox: &mut Mailbox, gathered: &mut Gathered) {
+        self.everywhere.iter().for_each(|&leaf| gathered.cross(line, leaf));
+        let range = (line.ray.start, line.ray.end);
+        self.tree.visit(line.ray.origin, line.inverse_dir, range, mailbox, |leaf| gathered.cross(line, leaf));
     }
 }

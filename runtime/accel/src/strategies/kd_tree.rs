@@ -13,6 +13,8 @@ use glam::DVec3;
 
 use arsc_geometry::Aabb;
 
+use crate::Budget;
+
 const TRAVERSAL: f64 = 8.0;
 const INTERSECTION: f64 = 64.0;
 const DEPTH: u32 = 48;
@@ -79,13 +81,16 @@ impl Mailbox {
 }
 
 impl KdTree {
-    /// `boxes` are finite; an empty one is never met. Numbers are positions in the list.
-    pub fn build(boxes: &[Aabb]) -> KdTree {
+    /// `boxes` are finite; an empty one is never met. Numbers are positions in the list. When the budget is spent cells
+    /// stay as they are.
+    pub fn build(boxes: &[Aabb], budget: &Budget) -> KdTree {
         let numbers = 0..boxes.len() as u32;
         let items: Vec<(u32, Aabb)> = numbers.zip(boxes.iter().copied()).filter(|(_, b)| !b.is_empty()).collect();
         let bounds = items.iter().fold(Aabb::EMPTY, |hull, (_, b)| hull.union(b));
         let mut tree = KdTree { bounds, nodes: vec![], items: vec![], count: boxes.len() };
-        let most = COPIES * items.len() + 4096;
+        let most = (COPIES * items.len() + 4096).min(budget.bytes / (size_of::<Node>() + size_of::<u32>()));
+        // Every cut makes one cell more.
+        let mut cells = 1;
         let mut work = vec![(bounds, items, 0, None)];
         // Cells that wait hold items too: counted with those that are placed.
         let mut held = work[0].1.len();
@@ -96,10 +101,12 @@ impl KdTree {
             {
                 *above = here;
             }
-            let split = if depth < DEPTH && held < most { best_split(&cell, &items) } else { None };
+            let split =
+                if depth < DEPTH && held < most && cells < budget.cells { best_split(&cell, &items) } else { None };
             match split {
                 None => tree.push_leaf(&items),
                 Some((axis, position)) => {
+                    cells += 1;
                     tree.nodes.push(Node::Inner { axis: axis as u8, position, above: 0 });
                     let [low, high] = halves(&cell, axis, position);
                     let within = |half: &Aabb| -> Vec<(u32, Aabb)> {
@@ -286,7 +293,7 @@ mod tests {
                 boxes[2].max.x = boxes[2].min.x;
                 boxes[3] = Aabb::EMPTY;
             }
-            let tree = KdTree::build(&boxes);
+            let tree = KdTree::build(&boxes, &Budget::UNLIMITED);
             for i in 0..400 {
                 let mut dir = point();
                 if i % 4 == 0 {
@@ -314,7 +321,7 @@ mod tests {
                 Aabb::new(center - half, center + half)
             })
             .collect();
-        let tree = KdTree::build(&boxes);
+        let tree = KdTree::build(&boxes, &Budget::UNLIMITED);
         let (mut mailbox, mut met) = (Mailbox::default(), 0);
         for _ in 0..100 {
             let origin = DVec3::new(-2.0, number(), number());

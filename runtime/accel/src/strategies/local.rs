@@ -2,6 +2,7 @@
 
 use arsc_geometry::Aabb;
 
+use crate::Budget;
 use crate::cells::{self, CellSet, Line, Window};
 use crate::level::Solids;
 use crate::query::{Extent, Mode, Query, slab};
@@ -27,14 +28,14 @@ pub struct Local {
 }
 
 impl Local {
-    pub fn build(solids: &Solids) -> Local {
+    pub fn build(solids: &Solids, budget: &Budget) -> Local {
         let mut local = Local::default();
-        for (number, solid) in solids.numbered() {
+        for ((number, solid), share) in solids.numbered().zip(solids.shares(budget)) {
             let core = cells::core(solid);
             if !core.is_empty() && !Extent::admits(&core) {
                 local.open.push(Open::Whole { solid: number });
             } else if !local.members.admit(number, solid) {
-                cells::append_solid(&mut local.cells, number, solid);
+                cells::append_solid(&mut local.cells, number, solid, &share);
                 if let Some((cell, core)) = cells::append_outer(&mut local.outer, number, solid) {
                     local.open.push(Open::Outer { cell, core });
                 }
@@ -47,7 +48,7 @@ impl Local {
         if solids.is_left_out(solid, query) {
             return;
         }
-        query.tests += 1;
+        query.tests += solids.models[solid as usize].leaves.len() as u32;
         let (ray, view) = (solids.near_ray(solid, query), query.view);
         oracle::transitions(&solids.models[solid as usize], &ray, |transition| {
             query.offer(solids.candidate(solid, transition, &ray, &view))
@@ -74,7 +75,7 @@ impl Local {
         if low > high {
             return;
         }
-        query.tests += 1;
+        query.tests += cell.leaf_count();
         let solid = &solids.models[cell.solid as usize];
         let window = Window { low, high, start: ray.start, tolerance: solids.tolerance(cell.solid) };
         let line = Line::new(solid, cell.solid, ray, &view);

@@ -11,12 +11,14 @@
 //! | `tree` | solid | boxes at the nodes of the operator tree |
 //! | `kd` | solid | KD tree over the solid's leaves; whole tree |
 //! | `hybrid` | solid | `kd` with mesh operands, else `tree` |
+//! | `incremental` | solid | as `kd`, but only what changes is evaluated |
 //!
 //! A leaf's box is cut to that of its solid, where alone it matters; what is not finite even so is met by every ray. Boxes
 //! are grown by [`PAD`] tolerances, so that crossings which coincide with one within are found together.
 
 mod collect;
 mod collected;
+mod gather;
 mod hybrid;
 mod kd;
 mod kd_tree;
@@ -30,10 +32,10 @@ mod whole;
 
 use arsc_geometry::Aabb;
 
-use crate::Strategy;
 use crate::level::Solids;
 use crate::query::{Extent, Query};
 use crate::solid::SolidModel;
+use crate::{Budget, Strategy};
 
 use collect::Collect;
 use local::Local;
@@ -71,15 +73,19 @@ pub enum Tracer {
 }
 
 impl Tracer {
-    pub fn build(solids: &Solids, strategy: Strategy) -> Tracer {
+    pub fn build(solids: &Solids, strategy: Strategy, budget: &Budget) -> Tracer {
+        let per_solid = |structure: fn(&SolidModel, &Budget) -> Structure| {
+            Tracer::PerSolid(PerSolid::build(solids, budget, structure))
+        };
         match strategy {
-            Strategy::Local => Tracer::Local(Local::build(solids)),
-            Strategy::Native => Tracer::Native(Native::build(solids)),
+            Strategy::Local => Tracer::Local(Local::build(solids, budget)),
+            Strategy::Native => Tracer::Native(Native::build(solids, budget)),
             Strategy::Collect => Tracer::Collect(Collect::build(solids)),
-            Strategy::Tree => Tracer::PerSolid(PerSolid::build(solids, Structure::tree)),
-            Strategy::Kd => Tracer::PerSolid(PerSolid::build(solids, Structure::kd)),
-            Strategy::Hybrid => Tracer::PerSolid(PerSolid::build(solids, hybrid::structure)),
-            Strategy::Oracle => Tracer::PerSolid(PerSolid::build(solids, |_| Structure::Oracle)),
+            Strategy::Tree => per_solid(Structure::tree),
+            Strategy::Kd => per_solid(Structure::kd),
+            Strategy::Incremental => per_solid(Structure::incremental),
+            Strategy::Hybrid => per_solid(hybrid::structure),
+            Strategy::Oracle => per_solid(|_, _| Structure::Oracle),
         }
     }
 

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use arsc_geometry::Aabb;
 
+use crate::Budget;
 use crate::level::Solids;
 use crate::query::Query;
 use crate::strategies::SolidTracer;
@@ -27,13 +28,13 @@ pub struct Native {
 }
 
 impl Native {
-    pub fn build(solids: &Solids) -> Native {
+    pub fn build(solids: &Solids, budget: &Budget) -> Native {
         let (collected, boxed) = Collected::build(solids);
         let corner = boxed.iter().fold(DVec3::ZERO, |corner, (_, b)| corner.max(b.min.abs()).max(b.max.abs()));
         let magnitude = corner.max_element();
         let boxes: Vec<Aabb> = boxed.iter().map(|(_, b)| b.dilated(ROUNDING * magnitude)).collect();
         let leaves = boxed.iter().map(|&(leaf, _)| leaf).collect();
-        Native { collected, tree: KdTree::build(&boxes), leaves, reach: NEAR * magnitude }
+        Native { collected, tree: KdTree::build(&boxes, budget), leaves, reach: NEAR * magnitude }
     }
 }
 

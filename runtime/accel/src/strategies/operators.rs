@@ -1,17 +1,22 @@
-//! The whole operator tree of a solid, evaluated along a ray.
+//! The operator tree of a solid, evaluated along a ray: what strategies share that gather the crossings of leaves first and
+//! evaluate afterwards.
 //!
-//! Strategies that collect the crossings of leaves first and evaluate afterwards share this. Every operator counts its
-//! operands that decide it (true ones of an OR, false ones of an AND); where a leaf is crossed the change goes up as
-//! far as values change. The counts of a point outside all leaves are made once, at build; a ray starts from a copy, so the
-//! cost is one copy of a word per operator and a walk to the root per crossing (n-ary operators, Roth's lists unrolled:
-//! S. D. Roth, "Ray casting for modeling solids", 1982).
+//! Every operator counts its operands that decide it (true ones of an OR, false ones of an AND); where a leaf is crossed
+//! the change goes up as far as values change. The counts at the ray's start are found in one of two ways:
+//!
+//! - [`Evaluation::Whole`]: by evaluating the whole tree there, as the programs do that `native`, `collect` and `kd` stand for
+//!   (S. D. Roth, "Ray casting for modeling solids", 1982). It takes a time proportional to the number of literals.
+//! - [`Evaluation::Kept`]: by a copy of those of a point outside all leaves, made at build, and a flip for every leaf
+//!   that the ray starts in. It takes no more than the number of operators, which are few where operands are many.
 //!
 //! Leaves that a strategy leaves out count as outside all along the ray. It may do so where that does not change the
 //! value between the ray's start and end: a leaf whose box the ray misses, or one below an operator that others decide.
 
+use crate::cells::Kernel;
 use crate::coincidence::{Event, States, settle};
 use crate::expression::{Expression, Op, Token, Word};
-use crate::solid::{SolidModel, SolidRay};
+use crate::solid::SolidModel;
+use crate::strategies::gather::Gathered;
 use crate::transition::Transition;
 
 const NONE: u32 = u32::MAX;
@@ -23,29 +28,48 @@ struct Operator {
     absorbing: bool,
 }
 
-/// The operators of an expression, and which of them each leaf is an operand of.
+/// How the values at a ray's start are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Evaluation {
+    #[default]
+    Whole,
+    Kept,
+}
+
+/// An operand of an operator that is a leaf or its complement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Literal {
+    leaf: u32,
+    operator: u32,
+    negated: bool,
+}
+
+/// The operators of an expression, which of them each leaf is an operand of, and how leaves are crossed.
 #[derive(Clone, Debug, Default)]
 pub struct Operators {
+    pub kernels: Vec<Kernel>,
+    evaluation: Evaluation,
     operators: Vec<Operator>,
     /// Per operator: deciding operands when every leaf is outside.
     outside: Vec<u32>,
-    /// The literals of leaf `i` are `literals[first[i]..first[i + 1]]`: operator, negated.
+    /// By leaf: those of leaf `i` are `literals[first[i]..first[i + 1]]`.
+    literals: Vec<Literal>,
     first: Vec<u32>,
-    literals: Vec<(u32, bool)>,
-    constant: bool,
 }
 
 impl Operators {
-    pub fn new(solid: &SolidModel) -> Operators {
+    pub fn new(solid: &SolidModel, evaluation: Evaluation) -> Operators {
+        let kernels = solid.leaves.iter().map(Kernel::new).collect();
         match &solid.expression {
-            Expression::Constant(value) => Operators { constant: *value, ..Operators::default() },
-            Expression::Tokens(tokens) => Operators::from_tokens(tokens, solid.leaves.len()),
+            Expression::Constant(_) => Operators { kernels, ..Operators::default() },
+            Expression::Tokens(tokens) => {
+                Operators { kernels, evaluation, ..Operators::from_tokens(tokens, solid.leaves.len()) }
+            }
         }
     }
 
     fn from_tokens(tokens: &[Token], leaves: usize) -> Operators {
-        let mut operators = Vec::new();
-        let mut found: Vec<(u32, u32, bool)> = Vec::new();
+        let (mut operators, mut literals) = (vec![], vec![]);
         let mut open: Vec<(u32, usize)> = Vec::new();
         if let [_] = tokens {
             operators.push(Operator { parent: NONE, absorbing: true });
@@ -57,22 +81,41 @@ impl Operators {
             }
             let parent = open.last().map_or(NONE, |&(operator, _)| operator);
             match token.word() {
-                Word::Literal { leaf, negated } => found.push((leaf, parent, negated)),
+                Word::Literal { leaf, negated } => literals.push(Literal { leaf, operator: parent, negated }),
                 Word::Node { op, length } => {
                     open.push((operators.len() as u32, i + length as usize));
                     operators.push(Operator { parent, absorbing: op == Op::Or });
                 }
             }
         }
-        found.sort_unstable();
-        let first = (0..=leaves as u32).map(|leaf| found.partition_point(|&(l, ..)| l < leaf) as u32).collect();
-        let literals = found.iter().map(|&(_, operator, negated)| (operator, negated)).collect();
-        let outside = outside_counts(&operators, &found);
-        Operators { operators, outside, first, literals, constant: false }
+        literals.sort_unstable();
+        let first = (0..=leaves as u32).map(|leaf| literals.partition_point(|l| l.leaf < leaf) as u32).collect();
+        let mut made = Operators { operators, literals, first, ..Operators::default() };
+        let mut outside = vec![];
+        made.count(&vec![false; leaves], &mut outside);
+        made.outside = outside;
+        made
+    }
+
+    /// Deciding operands of each operator, from the leaves that a point is in: the whole tree, once. Operands come after
+    /// their operators, so backwards each is complete when its parent counts it.
+    fn count(&self, inside: &[bool], counts: &mut Vec<u32>) {
+        counts.clear();
+        counts.resize(self.operators.len(), 0);
+        for &Literal { leaf, operator, negated } in &self.literals {
+            let value = inside[leaf as usize] != negated;
+            counts[operator as usize] += u32::from(value == self.operators[operator as usize].absorbing);
+        }
+        for i in (1..self.operators.len()).rev() {
+            let Operator { parent, absorbing } = self.operators[i];
+            let value = (counts[i] > 0) == absorbing;
+            counts[parent as usize] += u32::from(value == self.operators[parent as usize].absorbing);
+        }
     }
 
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.operators[..])
+        size_of_val(&self.kernels[..])
+            + size_of_val(&self.operators[..])
             + size_of_val(&self.outside[..])
             + size_of_val(&self.first[..])
             + size_of_val(&self.literals[..])
@@ -88,33 +131,17 @@ impl Operators {
         values: &mut Values,
         visit: impl FnMut(Transition) -> bool,
     ) {
-        if !gathered.events.is_empty() {
-            let Gathered { events, inside } = gathered;
+        // A constant has no operators.
+        if !gathered.events.is_empty() && !self.operators.is_empty() {
+            let Gathered { events, inside, .. } = gathered;
             events.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.slot.cmp(&b.slot)));
-            values.begin(self);
-            let mut along = Along { operators: self, values };
-            inside.iter().for_each(|&leaf| along.flip(leaf));
+            let mut along = values.begin(self, inside);
             walk(events, solid.tolerance, &mut along, visit);
             events.iter().for_each(|event| values.inside[event.slot as usize] = false);
             inside.iter().for_each(|&leaf| values.inside[leaf as usize] = false);
         }
         gathered.clear();
     }
-}
-
-/// Deciding operands of each operator when every leaf is outside. Operands come after their operators, so backwards
-/// each is complete when its parent counts it.
-fn outside_counts(operators: &[Operator], literals: &[(u32, u32, bool)]) -> Vec<u32> {
-    let mut counts = vec![0; operators.len()];
-    for &(_, operator, negated) in literals {
-        counts[operator as usize] += u32::from(negated == operators[operator as usize].absorbing);
-    }
-    for i in (1..operators.len()).rev() {
-        let Operator { parent, absorbing } = operators[i];
-        let value = (counts[i] > 0) == absorbing;
-        counts[parent as usize] += u32::from(value == operators[parent as usize].absorbing);
-    }
-    counts
 }
 
 /// Goes along sorted events, cluster by cluster.
@@ -138,55 +165,6 @@ fn walk(events: &[Event], tolerance: f64, along: &mut Along, mut visit: impl FnM
     }
 }
 
-/// Crossings of a solid's leaves along a ray; slots are leaves.
-#[derive(Debug, Default)]
-pub struct Gathered {
-    events: Vec<Event>,
-    /// Leaves that the ray starts in.
-    inside: Vec<u32>,
-}
-
-/// A position to go back to.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Mark {
-    events: usize,
-    inside: usize,
-}
-
-impl Gathered {
-    /// Crosses a leaf. Returns its value if it is the same from `low` to `high`, which lie within the ray.
-    pub fn cross(&mut self, solid: &SolidModel, leaf: u32, ray: &SolidRay, low: f64, high: f64) -> Option<bool> {
-        let crossings = solid.leaves[leaf as usize].crossings(ray.origin, ray.dir);
-        let inside = crossings.inside_after(ray.start);
-        if inside {
-            self.inside.push(leaf);
-        }
-        let (mut value, mut changes) = (inside, false);
-        let end = ray.end + solid.tolerance;
-        for (t, face) in crossings.iter().filter(|&(t, _)| t > ray.start && t <= end) {
-            self.events.push(Event { t, slot: leaf, face });
-            value ^= t <= low;
-            changes |= t > low && t <= high;
-        }
-        (!changes).then_some(value)
-    }
-
-    pub fn mark(&self) -> Mark {
-        Mark { events: self.events.len(), inside: self.inside.len() }
-    }
-
-    /// Forgets what came after `mark`; names the leaves, some of them repeatedly.
-    pub fn rewind(&mut self, mark: Mark, forgotten: impl FnMut(u32)) {
-        let events = self.events.drain(mark.events..).map(|event| event.slot);
-        events.chain(self.inside.drain(mark.inside..)).for_each(forgotten);
-    }
-
-    pub fn clear(&mut self) {
-        self.events.clear();
-        self.inside.clear();
-    }
-}
-
 /// The state of an evaluation: counts of operators, and the leaves that the point is in (all false between rays).
 #[derive(Debug, Default)]
 pub struct Values {
@@ -195,12 +173,25 @@ pub struct Values {
 }
 
 impl Values {
-    fn begin(&mut self, operators: &Operators) {
-        self.counts.clear();
-        self.counts.extend_from_slice(&operators.outside);
+    /// The values at a point in these leaves.
+    fn begin<'a>(&'a mut self, operators: &'a Operators, inside: &[u32]) -> Along<'a> {
         let leaves = operators.first.len();
         if self.inside.len() < leaves {
             self.inside.resize(leaves, false);
+        }
+        match operators.evaluation {
+            Evaluation::Whole => {
+                inside.iter().for_each(|&leaf| self.inside[leaf as usize] = true);
+                operators.count(&self.inside, &mut self.counts);
+                Along { operators, values: self }
+            }
+            Evaluation::Kept => {
+                self.counts.clear();
+                self.counts.extend_from_slice(&operators.outside);
+                let mut along = Along { operators, values: self };
+                inside.iter().for_each(|&leaf| along.flip(leaf));
+                along
+            }
         }
     }
 }
@@ -221,7 +212,8 @@ impl States for Along<'_> {
         *inside = !*inside;
         let inside = *inside;
         let Operators { operators, first, literals, .. } = self.operators;
-        for &(operator, negated) in &literals[first[slot as usize] as usize..first[slot as usize + 1] as usize] {
+        let own = &literals[first[slot as usize] as usize..first[slot as usize + 1] as usize];
+        for &Literal { operator, negated, .. } in own {
             let (mut at, mut value) = (operator, inside != negated);
             loop {
                 let Operator { parent, absorbing } = operators[at as usize];
@@ -238,9 +230,6 @@ impl States for Along<'_> {
     }
 
     fn value(&self) -> bool {
-        match self.operators.operators.first() {
-            Some(root) => (self.values.counts[0] > 0) == root.absorbing,
-            None => self.operators.constant,
-        }
+        (self.values.counts[0] > 0) == self.operators.operators[0].absorbing
     }
 }

@@ -18,9 +18,9 @@ use arsc_geometry::Aabb;
 
 use crate::expression::{Expression, Op, Token, Word};
 use crate::query::slab;
-use crate::solid::{SolidModel, SolidRay};
+use crate::solid::SolidModel;
+use crate::strategies::gather::{Gathered, Mark, SolidLine};
 use crate::strategies::kd_tree::Mailbox;
-use crate::strategies::operators::{Gathered, Mark};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
@@ -77,21 +77,13 @@ impl BoxTree {
     }
 
     /// Crosses the leaves that may matter to the value between the ray's start and its end.
-    pub fn gather(
-        &self,
-        solid: &SolidModel,
-        ray: &SolidRay,
-        open: &mut Vec<Open>,
-        met: &mut Mailbox,
-        gathered: &mut Gathered,
-    ) {
-        met.begin(solid.leaves.len());
+    pub fn gather(&self, line: &SolidLine, open: &mut Vec<Open>, met: &mut Mailbox, gathered: &mut Gathered) {
+        met.begin(line.solid.leaves.len());
         open.clear();
-        let inverse_dir = ray.dir.recip();
-        let (mut low, mut high) = (ray.start, ray.end);
+        let (mut low, mut high) = (line.ray.start, line.ray.end);
         let mut i = 0;
         while let Some(node) = self.nodes.get(i as usize) {
-            let (enter, exit) = slab(&node.bounds, ray.origin, inverse_dir);
+            let (enter, exit) = slab(&node.bounds, line.ray.origin, line.inverse_dir);
             let within = (enter.max(low), exit.min(high));
             let mut along = if within.0 <= within.1 {
                 match node.kind {
@@ -102,7 +94,7 @@ impl BoxTree {
                         continue;
                     }
                     Kind::Absent => Along::Constant { value: node.beyond, bare: true },
-                    Kind::Literal { leaf, negated } => literal(solid, leaf, negated, ray, within, met, gathered),
+                    Kind::Literal { leaf, negated } => literal(line, leaf, negated, within, met, gathered),
                 }
             } else {
                 Along::Constant { value: node.beyond, bare: true }
@@ -138,10 +130,9 @@ enum Along {
 }
 
 fn literal(
-    solid: &SolidModel,
+    line: &SolidLine,
     leaf: u32,
     negated: bool,
-    ray: &SolidRay,
     (low, high): (f64, f64),
     met: &mut Mailbox,
     gathered: &mut Gathered,
@@ -150,7 +141,8 @@ fn literal(
         return Along::Varies;
     }
     let mark = gathered.mark();
-    let Some(inside) = gathered.cross(solid, leaf, ray, low, high) else { return Along::Varies };
+    gathered.cross(line, leaf);
+    let Some(inside) = gathered.constant_since(mark, low, high) else { return Along::Varies };
     if !inside {
         gathered.rewind(mark, |_| {});
         met.forget(leaf);

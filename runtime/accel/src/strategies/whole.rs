@@ -4,12 +4,14 @@
 
 use arsc_geometry::Aabb;
 
+use crate::Budget;
 use crate::level::Solids;
 use crate::query::{Extent, Query};
 use crate::solid::{SolidModel, SolidRay};
+use crate::strategies::gather::{Gathered, SolidLine};
 use crate::strategies::kd::SolidKd;
 use crate::strategies::kd_tree::Mailbox;
-use crate::strategies::operators::{Gathered, Operators, Values};
+use crate::strategies::operators::{Evaluation, Operators, Values};
 use crate::strategies::tree::{BoxTree, Open};
 use crate::strategies::{PAD, SolidTracer, oracle};
 
@@ -44,12 +46,17 @@ pub enum Structure {
 }
 
 impl Structure {
-    pub fn tree(solid: &SolidModel) -> Structure {
-        Structure::Tree(BoxTree::new(solid, PAD * solid.tolerance), Operators::new(solid))
+    pub fn tree(solid: &SolidModel, _: &Budget) -> Structure {
+        // Nodes are left out by their boxes: what is looked at is not the whole tree.
+        Structure::Tree(BoxTree::new(solid, PAD * solid.tolerance), Operators::new(solid, Evaluation::Kept))
     }
 
-    pub fn kd(solid: &SolidModel) -> Structure {
-        Structure::Kd(SolidKd::new(solid), Operators::new(solid))
+    pub fn kd(solid: &SolidModel, budget: &Budget) -> Structure {
+        Structure::Kd(SolidKd::new(solid, budget), Operators::new(solid, Evaluation::Whole))
+    }
+
+    pub fn incremental(solid: &SolidModel, budget: &Budget) -> Structure {
+        Structure::Kd(SolidKd::new(solid, budget), Operators::new(solid, Evaluation::Kept))
     }
 
     fn bytes(&self) -> usize {
@@ -78,8 +85,9 @@ pub struct PerSolid {
 }
 
 impl PerSolid {
-    pub fn build(solids: &Solids, structure: impl Fn(&SolidModel) -> Structure) -> PerSolid {
-        let structures = solids.numbered().map(|(_, solid)| structure(solid)).collect();
+    pub fn build(solids: &Solids, budget: &Budget, structure: fn(&SolidModel, &Budget) -> Structure) -> PerSolid {
+        let shares = solids.shares(budget);
+        let structures = solids.models.iter().zip(shares).map(|(solid, share)| structure(solid, &share)).collect();
         let present = solids.numbered().filter(|(_, solid)| !solid.bounds.is_empty());
         let (primitives, open): (Vec<_>, Vec<_>) = present.partition(|(_, solid)| Extent::admits(&solid.bounds));
         let number = |(number, _): (u32, &SolidModel)| number;
@@ -94,20 +102,20 @@ impl PerSolid {
         if solids.is_left_out(solid, query) {
             return;
         }
-        query.tests += 1;
         let (ray, model) = (solids.near_ray(solid, query), &*solids.models[solid as usize]);
         match &self.structures[solid as usize] {
             Structure::Oracle => {
                 let view = query.view;
+                query.tests += model.leaves.len() as u32;
                 oracle::transitions(model, &ray, |transition| {
                     query.offer(solids.candidate(solid, transition, &ray, &view))
                 });
             }
-            Structure::Tree(tree, operators) => evaluate(solids, solid, operators, &ray, query, |scratch| {
-                tree.gather(model, &ray, &mut scratch.open, &mut scratch.mailbox, &mut scratch.gathered);
+            Structure::Tree(tree, operators) => evaluate(solids, solid, operators, &ray, query, |line, scratch| {
+                tree.gather(line, &mut scratch.open, &mut scratch.mailbox, &mut scratch.gathered);
             }),
-            Structure::Kd(kd, operators) => evaluate(solids, solid, operators, &ray, query, |scratch| {
-                kd.gather(model, &ray, &mut scratch.mailbox, &mut scratch.gathered);
+            Structure::Kd(kd, operators) => evaluate(solids, solid, operators, &ray, query, |line, scratch| {
+                kd.gather(line, &mut scratch.mailbox, &mut scratch.gathered);
             }),
         }
     }
@@ -120,14 +128,15 @@ pub fn evaluate(
     operators: &Operators,
     ray: &SolidRay,
     query: &mut Query,
-    gather: impl FnOnce(&mut WholeScratch),
+    gather: impl FnOnce(&SolidLine, &mut WholeScratch),
 ) {
     // Offering needs the query.
     let mut scratch = std::mem::take(&mut query.scratch.whole);
-    gather(&mut scratch);
-    let view = query.view;
+    let (view, model) = (query.view, &*solids.models[solid as usize]);
+    gather(&SolidLine::new(model, &operators.kernels, *ray, &view), &mut scratch);
     let WholeScratch { gathered, values, .. } = &mut scratch;
-    operators.transitions(&solids.models[solid as usize], gathered, values, |transition| {
+    query.tests += gathered.tests;
+    operators.transitions(model, gathered, values, |transition| {
         query.offer(solids.candidate(solid, transition, ray, &view))
     });
     query.scratch.whole = scratch;
