@@ -56,17 +56,19 @@ pub struct Nearest {
     /// Another candidate coincides with the best, at most this far away (with its own tolerance).
     pub tie: f64,
     t_max: f64,
+    /// The greatest tolerance of any solid: so far behind the best one may still coincide with it.
+    slack: f64,
 }
 
 impl Nearest {
-    pub fn new(t_max: f64) -> Nearest {
-        Nearest { best: None, tie: 0.0, t_max }
+    pub fn new(t_max: f64, slack: f64) -> Nearest {
+        Nearest { best: None, tie: 0.0, t_max, slack }
     }
 
     /// Beyond this nothing matters any more.
     #[inline]
     pub fn limit(&self) -> f64 {
-        self.best.map_or(self.t_max, |best| best.t + best.tolerance)
+        self.best.map_or(self.t_max, |best| best.t + best.tolerance.max(self.slack))
     }
 
     /// The candidate is of the solid that the best is of, and within the tolerance of it.

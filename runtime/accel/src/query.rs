@@ -252,13 +252,14 @@ pub struct Query {
 }
 
 impl Query {
-    pub fn new(mode: Mode, ray: &Ray, mut scratch: Box<Scratch>) -> Query {
+    /// `slack` is the greatest tolerance of any solid.
+    pub fn new(mode: Mode, ray: &Ray, slack: f64, mut scratch: Box<Scratch>) -> Query {
         scratch.clear();
         Query {
             mode,
             ray: *ray,
             view: View::world(ray),
-            nearest: Nearest::new(ray.t_max),
+            nearest: Nearest::new(ray.t_max, slack),
             blocked: false,
             tentative: false,
             unclear: false,

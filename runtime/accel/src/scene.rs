@@ -84,6 +84,17 @@ struct Member {
     frame: Option<Frame>,
 }
 
+impl Member {
+    /// Bound on the solid's tolerance in the world, along any direction.
+    fn tolerance(&self) -> f64 {
+        let columns = |frame: &Frame| {
+            let m = frame.world_from_object.matrix3;
+            m.x_axis.length() + m.y_axis.length() + m.z_axis.length()
+        };
+        self.model.tolerance * self.frame.as_ref().map_or(1.0, columns)
+    }
+}
+
 /// Geometry, ready to be traced from any number of threads.
 ///
 /// Rays must have a unit direction; one that is not finite meets nothing.
@@ -93,6 +104,8 @@ pub struct Scene {
     bounds: Aabb,
     bounded: Aabb,
     stats: BuildStats,
+    /// The greatest tolerance of any member, in the world.
+    slack: f64,
     world: EmbreeScene<World>,
 }
 
@@ -128,7 +141,8 @@ impl Scene {
             build_time: start.elapsed(),
         };
         let Plan { members, parts, bounds, bounded } = plan;
-        Ok(Scene { members, parts, bounds, bounded, stats, world })
+        let slack = members.iter().map(Member::tolerance).fold(0.0, f64::max);
+        Ok(Scene { members, parts, bounds, bounded, stats, slack, world })
     }
 
     /// Holds everything; infinite where an unbounded solid or plane is.
@@ -255,7 +269,7 @@ impl Scene {
         if !is_traceable(ray) {
             return None;
         }
-        let mut query = Query::new(mode, ray, SCRATCH.take().unwrap_or_default());
+        let mut query = Query::new(mode, ray, self.slack, SCRATCH.take().unwrap_or_default());
         query.only = only;
         World::trace(&self.world, &mut query);
         let result = answer(&mut query);

@@ -63,11 +63,15 @@ fn intersect(caps: (f64, u32, f64, u32), side: (f64, f64)) -> Crossings {
 /// the double cone is cut off by the slab, and what is left is convex: one interval.
 pub(crate) fn cone_crossings(base: f64, top: f64, height: f64, origin: DVec3, dir: DVec3) -> Crossings {
     let Some(caps) = slab(0.0, height, origin, dir) else { return Crossings::NONE };
-    // From the point nearest to the middle of the cone nothing large is subtracted.
-    let shift = (DVec3::new(0.0, 0.0, 0.5 * height) - origin).dot(dir);
-    let o = origin + dir * shift;
+    // From the point nearest to the tip nothing large is subtracted, and lines through the tip keep their double root there;
+    // a tip that is cut off and far away is replaced by the middle.
     let slope = (top - base) / height;
-    let (r, dr) = (base + slope * o.z, slope * dir.z);
+    let tip = if top == 0.0 { height } else { -base / slope };
+    let (z, radius) = if (tip / height - 0.5).abs() < 4.0 { (tip, 0.0) } else { (0.5 * height, 0.5 * (base + top)) };
+    let center = DVec3::new(0.0, 0.0, z);
+    let shift = (center - origin).dot(dir);
+    let o = (origin - center) + dir * shift;
+    let (r, dr) = (radius + slope * o.z, slope * dir.z);
     let a = dir.truncate().length_squared() - dr * dr;
     let half_b = o.truncate().dot(dir.truncate()) - r * dr;
     let c = (o.truncate().length() - r) * (o.truncate().length() + r);

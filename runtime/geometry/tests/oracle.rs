@@ -12,7 +12,7 @@
 
 mod exact;
 
-use arsc_geometry::{Crossings, DAffine3, DVec3, Placed, Shape};
+use arsc_geometry::{Crossings, DAffine3, DVec3, Hyperboloid, Paraboloid, Placed, Shape};
 use exact::{Big, Line, LineSet, Poly, between, big};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -21,6 +21,9 @@ use rand_pcg::Pcg64;
 fn shapes() -> Vec<(Shape, f64)> {
     let cone = |base_radius, top_radius, height| Shape::Cone { base_radius, top_radius, height };
     let torus = |major: f64, minor: f64| (Shape::Torus { major, minor }, 8.0 + major / minor);
+    let hyperboloid = |radius, slope, half_height, two_sheets| {
+        Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets })
+    };
     vec![
         (Shape::Sphere { radius: 0.7 }, 8.0),
         (Shape::Box { min: DVec3::new(-0.5, -0.2, 0.1), max: DVec3::new(0.6, 0.9, 0.8) }, 8.0),
@@ -38,6 +41,13 @@ fn shapes() -> Vec<(Shape, f64)> {
         torus(0.4, 0.7),
         torus(0.01, 0.7),
         (Shape::HalfSpace, 8.0),
+        (Shape::Paraboloid(Paraboloid { radius: 0.8, height: 1.2 }), 8.0),
+        (Shape::Paraboloid(Paraboloid { radius: 0.1, height: 2.0 }), 8.0),
+        (Shape::Paraboloid(Paraboloid { radius: 2.0, height: 0.1 }), 8.0),
+        (hyperboloid(0.4, 0.6, 1.0, false), 8.0),
+        (hyperboloid(0.01, 1.0, 1.0, false), 8.0),
+        (hyperboloid(0.4, 0.6, 1.0, true), 8.0),
+        (hyperboloid(0.01, 3.0, 1.0, true), 8.0),
     ]
 }
 
@@ -53,6 +63,10 @@ fn marks(shape: &Shape) -> Vec<f64> {
         Shape::Torus { major, minor } => {
             let lens = (minor * minor - major * major).max(0.0).sqrt();
             vec![0.0, major, minor, -minor, major + minor, major - minor, 0.5 * minor, -0.9 * minor, lens, -lens]
+        }
+        Shape::Paraboloid(Paraboloid { radius, height }) => vec![0.0, radius, height, 0.5 * height],
+        Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, .. }) => {
+            vec![0.0, radius, half_height, -half_height, radius / slope, slope * half_height]
         }
         _ => vec![0.0],
     }
@@ -83,7 +97,7 @@ fn exact_set(shape: &Shape, line: &Line, by: &Big) -> LineSet {
         Shape::Cone { base_radius, top_radius, height } => {
             // Radius at z, and how much of it the offset along the normal is.
             let slope = (big(top_radius) - big(base_radius)) / big(height);
-            let across = big((1.0 + f64::try_from(&slope * &slope).unwrap_or(f64::MAX)).sqrt()) * by;
+            let across = big((1.0 + ((top_radius - base_radius) / height).powi(2)).sqrt()) * by;
             let radius = line.z.scaled(&slope).plus(&Poly::constant(big(base_radius) + across));
             let side = line.ring().minus(&radius.squared()).not_positive();
             let nappe = radius.scaled(&big(-1.0)).not_positive();
@@ -99,6 +113,22 @@ fn exact_set(shape: &Shape, line: &Line, by: &Big) -> LineSet {
                 if minor > major { tube.or(&w.not_positive()) } else { tube }
             }
         },
+        Shape::Paraboloid(Paraboloid { radius, height }) => {
+            let latus = big(radius) * big(radius) / big(height);
+            let steepest = big((4.0 * radius * radius + (radius * radius / height).powi(2)).sqrt());
+            let level = line.ring().minus(&line.z.scaled(&latus)).minus(&Poly::constant(by * steepest));
+            level.not_positive().and(&line.z.minus(&Poly::constant(big(height) + by)).not_positive())
+        }
+        Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets }) => {
+            let steep = big(slope) * big(slope);
+            let offset = big(radius) * big(radius) * big(if two_sheets { -1.0 } else { 1.0 });
+            let cap = (slope * half_height).powi(2) + radius * radius;
+            let steepest = big(2.0 * (cap + (slope * slope * half_height).powi(2)).sqrt());
+            let level = line.ring().minus(&line.z.squared().scaled(&steep));
+            let side = level.minus(&Poly::constant(offset + by * steepest)).not_positive();
+            let end = big(half_height) + by;
+            side.and(&line.slab(&-end.clone(), &end))
+        }
         Shape::HalfSpace => line.z.minus(&Poly::constant(by.clone())).not_positive(),
         #[allow(unreachable_patterns)]
         ref other => panic!("no oracle for {other:?}"),
@@ -274,4 +304,23 @@ fn tori_are_met_by_lines_parallel_to_their_plane() {
 #[ignore = "long: run with --release -- --ignored"]
 fn crossings_are_within_their_bound_at_length() {
     check(20_000, 1000);
+}
+
+/// The quadratic has a double root at the tip, and half of the lines through it go on inside.
+#[test]
+fn cones_are_met_by_lines_through_their_tip() {
+    let mut rng = Pcg64::seed_from_u64(5);
+    for (base_radius, top_radius) in [(0.8, 0.0), (0.0, 0.6)] {
+        let shape = Shape::Cone { base_radius, top_radius, height: 1.1 };
+        let tip = DVec3::new(0.0, 0.0, if top_radius == 0.0 { 1.1 } else { 0.0 });
+        for _ in 0..200 {
+            let mut dir = vector(&mut rng, 1.0).normalize();
+            if rng.random() {
+                dir = DVec3::new(0.0, dir.y, dir.z).normalize();
+            }
+            let origin = tip + dir * rng.random_range(-3.0..3.0);
+            let k = needed(&shape, origin, dir, 1e9);
+            assert!(k <= 8.0, "{shape:?}: needs K = {k}: {origin:?} {dir:?} {:?}", shape.crossings(origin, dir));
+        }
+    }
 }

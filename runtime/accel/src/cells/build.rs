@@ -67,8 +67,29 @@ pub fn append_outer(set: &mut CellSet, number: u32, solid: &SolidModel) -> Optio
     if substitute(tokens, |leaf| bounded(leaf).then_some(false), &mut out).is_some() {
         return None;
     }
-    let cell = set.push(number, Aabb::EVERYTHING, &leaves_of(&out), &out, &solid.leaves);
+    let (out, leaves) = essential(out)?;
+    let cell = set.push(number, Aabb::EVERYTHING, &leaves, &out, &solid.leaves);
     Some((cell, core(solid)))
+}
+
+/// The expression without the leaves that its value does not depend on, as far as a truth table tells, and the leaves that
+/// are left; `None` when it is constant.
+fn essential(tokens: Vec<Token>) -> Option<(Vec<Token>, Vec<u32>)> {
+    let leaves = leaves_of(&tokens);
+    if leaves.len() > TABLE_LEAVES {
+        return Some((tokens, leaves));
+    }
+    let slot = |leaf: u32| leaves.binary_search(&leaf).map_or(0, |i| i as u32);
+    let table = truth_table::table(&tokens, slot);
+    let is_idle = |leaf: u32| !truth_table::depends_on(table, slot(leaf) as usize);
+    if !leaves.iter().any(|&leaf| is_idle(leaf)) {
+        return Some((tokens, leaves));
+    }
+    let mut out = Vec::with_capacity(tokens.len());
+    match substitute(&tokens, |leaf| is_idle(leaf).then_some(false), &mut out) {
+        Some(_) => None,
+        None => Some((out.clone(), leaves_of(&out))),
+    }
 }
 
 /// Distinct leaves of an expression, ascending.
@@ -148,18 +169,15 @@ impl<'a> Builder<'a> {
             }
             if leaves.iter().any(|&leaf| self.states[leaf as usize].is_some()) {
                 work.tokens = self.substituted(&work.tokens)?;
-                leaves = leaves_of(&work.tokens);
             }
-            if leaves.len() <= TABLE_LEAVES {
-                self.drop_redundant(&mut work.tokens, &mut leaves)?;
-            }
+            (work.tokens, leaves) = essential(std::mem::take(&mut work.tokens))?;
             let pairs = (leaves.len() * leaves.len()) as u64;
             let compare = (2..=DOMINANCE_LEAVES).contains(&leaves.len());
             if compare {
                 self.spend(pairs / 16);
             }
             if compare && self.drop_dominated(&mut work.tokens, &padded)? {
-                leaves = leaves_of(&work.tokens);
+                (work.tokens, leaves) = essential(std::mem::take(&mut work.tokens))?;
             }
             let tight = self.tightened(&work.region, &leaves, &work.tokens);
             if tight.is_empty() {
@@ -181,22 +199,6 @@ impl<'a> Builder<'a> {
             Some(_) => None,
             None => Some(out),
         }
-    }
-
-    /// Leaves that the value does not depend on go; `None` when none is left.
-    fn drop_redundant(&mut self, tokens: &mut Vec<Token>, leaves: &mut Vec<u32>) -> Option<()> {
-        let slot = |leaf: u32| leaves.binary_search(&leaf).map_or(0, |i| i as u32);
-        let table = truth_table::table(tokens, slot);
-        let idle: Vec<u32> =
-            (0..leaves.len()).filter(|&i| !truth_table::depends_on(table, i)).map(|i| leaves[i]).collect();
-        if !idle.is_empty() {
-            for &leaf in leaves.iter() {
-                self.states[leaf as usize] = idle.contains(&leaf).then_some(false);
-            }
-            *tokens = self.substituted(tokens)?;
-            *leaves = leaves_of(tokens);
-        }
-        Some(())
     }
 
     /// Whether anything went; `None` when the expression became constant.
