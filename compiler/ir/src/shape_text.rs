@@ -3,7 +3,7 @@
 use std::fmt::{self, Formatter};
 use std::sync::Arc;
 
-use arsc_geometry::{DVec2, DVec3, Hyperboloid, Paraboloid, Polygon, Polyhedron, Prism, Shape};
+use arsc_geometry::{DVec2, DVec3, Hyperboloid, Paraboloid, Polygon, Polyhedron, Prism, Shape, Superquadric};
 
 use crate::args::{Args, float_list};
 use crate::print::Quoted;
@@ -37,6 +37,10 @@ pub(crate) fn open_shape<'a, 'b>(f: &'a mut Formatter<'b>, shape: &Shape) -> Res
         Shape::Prism(ref prism) => {
             let call = Call::new(f, "prism")?.float("height", prism.height())?;
             prism.polygon().rings().iter().try_fold(call, |call, ring| call.value(Floats(&flat2(ring))))
+        }
+        Shape::Superquadric(ref superquadric) => {
+            let [e1, e2] = superquadric.exponents();
+            Call::new(f, "superquadric")?.float("e1", e1)?.float("e2", e2)
         }
         Shape::Polyhedron(ref polyhedron) => {
             let coordinates: Vec<f64> = polyhedron.points().iter().flat_map(DVec3::to_array).collect();
@@ -102,6 +106,10 @@ pub(crate) fn shape(args: &mut Args) -> Result<Option<Shape>, Fault> {
         }),
         "prism" => prism(args)?,
         "polyhedron" => polyhedron(args)?,
+        "superquadric" => {
+            let solid = Superquadric::new(args.float("e1")?, args.float("e2")?);
+            Shape::Superquadric(Arc::new(solid.ok_or((args.offset, "an exponent is out of range".to_owned()))?))
+        }
         _ => return Ok(None),
     }))
 }
@@ -142,6 +150,8 @@ pub(crate) mod tests {
                 rings.extend(holed.then(|| rectangle(0.3 * width, 0.5 * depth)));
                 Shape::Prism(Arc::new(Prism::new(Polygon::new(rings).unwrap(), height).unwrap()))
             }),
+            (0.05..10f64, 0.05..10f64)
+                .prop_map(|(e1, e2)| Shape::Superquadric(Arc::new(Superquadric::new(e1, e2).unwrap()))),
             (size(), size(), size()).prop_map(|(x, y, z)| {
                 let points = vec![DVec3::ZERO, DVec3::X * x, DVec3::Y * (x + y), DVec3::Z * (x + z)];
                 Shape::Polyhedron(Arc::new(Polyhedron::new(points).unwrap()))

@@ -258,6 +258,8 @@ fn sizes_that_make_no_solid() {
         ("hyperboloid(sheets: 3)", "3"),
         ("hyperboloid(radius: 1, height: 2, slope: 1, sheets: 2)", "2"),
         ("hyperboloid(slope: 0)", "0"),
+        ("superquadric(e1: 0.01)", "0.01"),
+        ("superquadric(e2: 50)", "50"),
         ("prism([(0, 0), (1, 1), (1, 0), (0, 1)])", "[(0, 0), (1, 1), (1, 0), (0, 1)]"),
         ("prism([(0, 0), (1, 0)])", "[(0, 0), (1, 0)]"),
         ("prism([(0, 0), (1, 0), (0, 1)], height: 0)", "0"),

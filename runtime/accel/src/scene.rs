@@ -316,8 +316,8 @@ impl Scene {
         match self.parts[hit.part.0 as usize].kind {
             PartKind::Surface { surface } => 1.0 / self.surfaces()[surface as usize].area(),
             PartKind::Leaf { solid, leaf } => match &self.members[solid as usize].frame {
-                None => self.members[solid as usize].model.leaves[leaf as usize].pdf_area(hit.ng),
-                Some(_) => self.placed_leaf(solid, leaf).map_or(0.0, |placed| placed.pdf_area(hit.ng)),
+                None => self.members[solid as usize].model.leaves[leaf as usize].pdf_area(hit.p, hit.ng),
+                Some(_) => self.placed_leaf(solid, leaf).map_or(0.0, |placed| placed.pdf_area(hit.p, hit.ng)),
             },
         }
     }

@@ -1,7 +1,7 @@
 //! Surface area of placed shapes, and points uniform over it in object space.
 //!
-//! A sheared shape is sampled uniformly in object space and carries the density of the world: `pdf_area` is one over the
-//! object area, divided by the stretch of the area element, |det M| |M⁻ᵀ n|.
+//! A sheared shape is sampled uniformly in object space (a superquadric nearly so) and carries the density of the world:
+//! `pdf_area` is that of object space, divided by the stretch of the area element, |det M| |M⁻ᵀ n|.
 
 use glam::DVec3;
 
@@ -22,6 +22,7 @@ impl Shape {
     pub fn face_count(&self) -> u32 {
         match self {
             Shape::Sphere { .. } | Shape::Torus { .. } | Shape::HalfSpace | Shape::InfiniteCylinder { .. } => 1,
+            Shape::Superquadric(_) => 1,
             Shape::Box { .. } => 6,
             Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::Paraboloid(_) | Shape::Hyperboloid(_) => 3,
             Shape::Mesh(mesh) => mesh.mesh().triangles.len() as u32,
@@ -45,6 +46,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => 0.5 * mesh.mesh().cross(face).length(),
             Shape::Polyhedron(ref polyhedron) => polyhedron.areas().area(face),
             Shape::Prism(ref prism) => prism.areas().area(face),
+            Shape::Superquadric(ref superquadric) => superquadric.area(),
         }
     }
 
@@ -98,6 +100,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => mesh.mesh().surface(face as usize, fold(u)).p,
             Shape::Polyhedron(ref polyhedron) => polyhedron.sample(face, u),
             Shape::Prism(ref prism) => prism.sample(face, u),
+            Shape::Superquadric(ref superquadric) => superquadric.sample(u),
         })
     }
 
@@ -119,44 +122,48 @@ impl Placed {
     pub fn sample_area(&self, u: [f64; 2]) -> Option<AreaPoint> {
         let (p, face) = self.shape().sample(u)?;
         let point = self.surface(self.world_from_object().transform_point3(p), face);
-        Some(AreaPoint { point, face, pdf_area: self.pdf_area(point.n) })
+        Some(AreaPoint { point, face, pdf_area: self.pdf_area(point.p, point.n) })
     }
 
-    /// Density with which [`Placed::sample_area`] gives a surface point with this outward or inward unit normal; zero
+    /// Density with which [`Placed::sample_area`] gives a surface point with its outward or inward unit normal; zero
     /// for unbounded shapes.
-    pub fn pdf_area(&self, world_normal: DVec3) -> f64 {
-        1.0 / (self.shape().area() * self.area_scale(world_normal))
+    pub fn pdf_area(&self, p: DVec3, world_normal: DVec3) -> f64 {
+        let density = match self.shape() {
+            Shape::Superquadric(superquadric) => superquadric.density(self.object_from_world().transform_point3(p)),
+            shape => 1.0 / shape.area(),
+        };
+        density / self.area_scale(world_normal)
     }
 
-    /// Surface area in the world, by stratified quadrature over object area (exact for similarities and flat faces);
-    /// infinite for unbounded shapes.
+    /// Surface area in the world; infinite for unbounded shapes. Exact for flat faces; else by quadrature over about ten
+    /// thousand points, exact for similarities, and to a thousandth under maps that stretch tenfold.
     pub fn area(&self) -> f64 {
-        const STRATA: usize = 48;
-        let object_area = self.shape().area();
-        if object_area.is_infinite() {
-            return object_area;
+        let shape = self.shape();
+        if !shape.is_bounded() {
+            return f64::INFINITY;
         }
-        if let Shape::Mesh(mesh) = self.shape() {
-            return self.mesh_area(mesh.mesh());
-        }
-        let middle = |i: usize| (i as f64 + 0.5) / STRATA as f64;
-        let mut sum = 0.0;
-        if matches!(self.shape(), Shape::Box { .. } | Shape::Prism(_) | Shape::Polyhedron(_)) {
-            let scaled = |face: u32| {
-                // Any point will do: the faces are flat.
-                let n = self.shape().surface(DVec3::ZERO, face).n;
-                self.shape().face_area(face) * self.area_scale(self.world_normal(n))
-            };
-            return (0..self.shape().face_count()).map(scaled).sum();
-        }
-        for i in 0..STRATA {
-            for j in 0..STRATA {
-                if let Some((p, face)) = self.shape().sample([middle(i), middle(j)]) {
-                    sum += self.area_scale(self.world_normal(self.shape().surface(p, face).n));
-                }
+        let scale = |p: DVec3, face: u32| self.area_scale(self.world_normal(shape.surface(p, face).n));
+        match shape {
+            Shape::Mesh(mesh) => self.mesh_area(mesh.mesh()),
+            Shape::Superquadric(superquadric) => {
+                superquadric.pieces().into_iter().map(|(p, area)| area * scale(p, 0)).sum()
             }
+            _ => (0..shape.face_count()).map(|face| shape.face_area(face) * self.mean_over(face, &scale)).sum(),
         }
-        object_area * sum / (STRATA * STRATA) as f64
+    }
+
+    /// The mean of a function over a face in object space.
+    fn mean_over(&self, face: u32, value: &impl Fn(DVec3, u32) -> f64) -> f64 {
+        const POINTS: u32 = 10_000;
+        if matches!(self.shape(), Shape::Box { .. } | Shape::Prism(_) | Shape::Polyhedron(_)) {
+            // Any point will do: the face is flat.
+            return value(DVec3::ZERO, face);
+        }
+        let strata = (POINTS / self.shape().face_count()).isqrt().max(8);
+        let middle = |i: u32| (f64::from(i) + 0.5) / f64::from(strata);
+        let places = (0..strata).flat_map(|i| (0..strata).map(move |j| [middle(i), middle(j)]));
+        let points = places.filter_map(|u| self.shape().sample_face(face, u));
+        points.map(|p| value(p, face)).sum::<f64>() / f64::from(strata * strata)
     }
 
     fn mesh_area(&self, mesh: &TriangleMesh) -> f64 {

@@ -38,6 +38,7 @@ impl Placed {
             Shape::Hyperboloid(hyperboloid) => return hyperboloid.classify(&region),
             Shape::Polyhedron(polyhedron) => return polyhedron.classify(&region),
             Shape::Prism(prism) => return prism.classify(&region),
+            Shape::Superquadric(superquadric) => return superquadric.classify(&region),
             _ => {}
         }
         if region.outside(self.shape()) {
@@ -101,9 +102,12 @@ impl Region {
             Shape::Torus { major, minor } => self.misses_torus(major, minor),
             Shape::HalfSpace => self.z_range().0 > 0.0,
             // They are classified by themselves.
-            Shape::Paraboloid(_) | Shape::Hyperboloid(_) | Shape::Polyhedron(_) | Shape::Prism(_) | Shape::Mesh(_) => {
-                false
-            }
+            Shape::Paraboloid(_)
+            | Shape::Hyperboloid(_)
+            | Shape::Polyhedron(_)
+            | Shape::Prism(_)
+            | Shape::Superquadric(_)
+            | Shape::Mesh(_) => false,
         }
     }
 

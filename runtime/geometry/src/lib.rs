@@ -31,6 +31,8 @@ mod region;
 mod shape;
 mod span;
 mod sphere;
+mod superquadric;
+mod superquadric_area;
 mod torus;
 mod triangle_mesh;
 
@@ -51,4 +53,5 @@ pub use prism::Prism;
 pub use ray::Ray;
 pub use shape::{LocalPoint, Shape};
 pub use span::Span;
+pub use superquadric::{EXPONENTS, Superquadric};
 pub use triangle_mesh::{TriangleMesh, TrianglePoint};

@@ -251,6 +251,7 @@ fn extent_along(shape: &Shape, row: DVec3, inverse: &DAffine3, axis: usize) -> (
         Shape::Hyperboloid(ref hyperboloid) => (-hyperboloid.support(-row), hyperboloid.support(row)),
         Shape::Mesh(ref mesh) => mesh.extent_along(row),
         Shape::Polyhedron(ref polyhedron) => (-polyhedron.support(-row), polyhedron.support(row)),
+        Shape::Superquadric(ref superquadric) => (-superquadric.support(-row), superquadric.support(row)),
         Shape::Prism(ref prism) => (-prism.support(-row), prism.support(row)),
     }
 }

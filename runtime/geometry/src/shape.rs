@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    Aabb, ClosedMesh, Crossings, Hyperboloid, Paraboloid, Polyhedron, Prism, cone, cuboid, half_space, sphere, torus,
+    Aabb, ClosedMesh, Crossings, Hyperboloid, Paraboloid, Polyhedron, Prism, Superquadric, cone, cuboid, half_space,
+    sphere, torus,
 };
 
 /// A closed solid in object space. Sizes are positive and finite; the compiler guarantees it.
@@ -45,6 +46,8 @@ pub enum Shape {
     HalfSpace,
     Paraboloid(Paraboloid),
     Hyperboloid(Hyperboloid),
+    /// A superellipsoid with unit half axes.
+    Superquadric(Arc<Superquadric>),
     /// What a closed triangle mesh bounds.
     Mesh(Arc<ClosedMesh>),
     /// The convex hull of points.
@@ -81,8 +84,7 @@ impl Shape {
             Shape::HalfSpace | Shape::Mesh(_) => true,
             Shape::Paraboloid(ref paraboloid) => paraboloid.is_valid(),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.is_valid(),
-            Shape::Polyhedron(_) => true,
-            Shape::Prism(_) => true,
+            Shape::Polyhedron(_) | Shape::Prism(_) | Shape::Superquadric(_) => true,
         }
     }
 
@@ -102,6 +104,7 @@ impl Shape {
             Shape::Polyhedron(polyhedron) => {
                 return polyhedron.points().iter().flat_map(DVec3::to_array).for_each(visit);
             }
+            Shape::Superquadric(superquadric) => &superquadric.exponents(),
             Shape::Prism(prism) => {
                 visit(prism.height());
                 return prism.polygon().rings().iter().flatten().flat_map(DVec2::to_array).for_each(visit);
@@ -128,6 +131,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => mesh.contains(p),
             Shape::Polyhedron(ref polyhedron) => polyhedron.contains(p),
             Shape::Prism(ref prism) => prism.contains(p),
+            Shape::Superquadric(ref superquadric) => superquadric.contains(p),
         }
     }
 
@@ -157,6 +161,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => *mesh.bounds(),
             Shape::Polyhedron(ref polyhedron) => polyhedron.bounds(),
             Shape::Prism(ref prism) => prism.bounds(),
+            Shape::Superquadric(ref superquadric) => superquadric.bounds(),
         }
     }
 
@@ -179,6 +184,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => mesh.magnitude(),
             Shape::Polyhedron(ref polyhedron) => largest(&polyhedron.bounds()),
             Shape::Prism(ref prism) => largest(&prism.bounds()),
+            Shape::Superquadric(_) => 1.0,
         }
     }
 
@@ -203,6 +209,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => mesh.crossings(origin, dir),
             Shape::Polyhedron(ref polyhedron) => polyhedron.crossings(origin, dir),
             Shape::Prism(ref prism) => prism.crossings(origin, dir),
+            Shape::Superquadric(ref superquadric) => unit(dir, |d| superquadric.crossings(origin, d)),
         }
     }
 
@@ -220,6 +227,7 @@ impl Shape {
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.surface(p, face),
             Shape::Polyhedron(ref polyhedron) => polyhedron.surface(p, face),
             Shape::Prism(ref prism) => prism.surface(p, face),
+            Shape::Superquadric(ref superquadric) => superquadric.surface(p),
             Shape::Mesh(ref mesh) => mesh.surface(p, face),
         }
     }

@@ -1,9 +1,11 @@
 //! Closed primitives.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 
 use arsc_diagnostics::codes::sema as codes;
-use arsc_geometry::{Hyperboloid, Paraboloid};
+use arsc_geometry::{EXPONENTS, Hyperboloid, Paraboloid, Superquadric};
 use arsc_ir::Shape;
 
 use super::{Builtin, Param};
@@ -129,7 +131,25 @@ fn quadrics() -> Vec<Builtin> {
         .param(Param::new("slope", Float, "radius over height of the cone that both forms approach").float(1.0).positive())
         .param(Param::new("sheets", Type::Int, "1 or 2").int(1).within(1.0, 2.0))
         .runs(Solid, hyperboloid),
+        solid(
+            "superquadric",
+            "A superellipsoid: (|x|^(2/`e2`) + |y|^(2/`e2`))^(`e2`/`e1`) + |z|^(2/`e1`) <= 1 in units of the half axes. \
+             Exponents near 0 make boxes, 1 is round, 2 flat, beyond 2 pinched.",
+        )
+        .param(Param::new("radii", Vec3, "half axes").vec3([1.0; 3]).positive())
+        .param(exponent("e1", "exponent from pole to pole"))
+        .param(exponent("e2", "exponent around the z axis"))
+        .runs(Solid, |m, args, site| {
+            let Some(solid) = Superquadric::new(args[1].as_float(), args[2].as_float()) else {
+                return Err(site.fail(codes::OUT_OF_RANGE, "an exponent is out of range").into());
+            };
+            m.solid(Shape::Superquadric(Arc::new(solid)), DAffine3::from_scale(args[0].as_vec3()), site)
+        }),
     ]
+}
+
+fn exponent(name: &'static str, doc: &'static str) -> Param {
+    Param::new(name, Float, doc).float(1.0).within(*EXPONENTS.start(), *EXPONENTS.end())
 }
 
 fn hyperboloid(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
@@ -227,13 +247,7 @@ fn files() -> Vec<Builtin> {
 }
 
 fn not_yet() -> Vec<Builtin> {
-    let size = |name, doc| Param::new(name, Float, doc).positive();
     vec![
-        solid("superquadric", "A superellipsoid.")
-            .param(Param::new("radii", Vec3, "half axes").vec3([1.0; 3]).positive())
-            .param(size("e1", "exponent from pole to pole").float(1.0))
-            .param(size("e2", "exponent around the z axis").float(1.0))
-            .later(Solid, "the superquadric"),
         solid("lathe", "A profile (radius, z), turned about the z axis.")
             .param(Param::new("profile", Type::list(Vec2), "points (radius, z)"))
             .later(Solid, "the solid of revolution"),
