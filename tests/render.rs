@@ -63,6 +63,40 @@ fn writes_what_the_script_says_below_the_output_folder() {
 }
 
 #[test]
+fn statistics_are_for_people_or_for_programs() {
+    let (folder, script) = scene("ball.arsl", BALL);
+    let out = folder.path().join("out");
+    let run = |more: &[&str]| {
+        let args = [&["render", &script, "-q", "--samples", "1", "-o", out.to_str().unwrap()], more].concat();
+        let run = arsc(&args);
+        assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+        run
+    };
+    let text = stderr(&run(&["--stats"]));
+    for word in ["csg            local", "cells", "per camera ray", "B per primitive", "ms per primitive"] {
+        assert!(text.contains(word), "{word} is not in\n{text}");
+    }
+    for strategy in ["local", "native", "collect", "tree", "kd", "hybrid", "incremental"] {
+        let printed = stdout(&run(&["--stats=json", "--csg", strategy, "--max-cells", "5", "--max-cell-memory", "1M"]));
+        let json: serde_json::Value = serde_json::from_str(&printed).unwrap();
+        assert_eq!(json[0]["csg"], strategy);
+        for name in ["primitives", "cells", "tests_per_ray", "bytes", "build_seconds", "bytes_per_primitive"] {
+            assert!(json[0][name].as_f64().unwrap() > 0.0, "{strategy}: {name} in {printed}");
+        }
+    }
+}
+
+#[test]
+fn an_unknown_strategy_is_told_the_known_ones() {
+    let (_folder, script) = scene("ball.arsl", BALL);
+    let run = arsc(&["render", &script, "--csg", "fastest"]);
+    assert_eq!(run.status.code(), Some(2));
+    for name in ["local", "native", "collect", "tree", "kd", "hybrid", "incremental"] {
+        assert!(stderr(&run).contains(name), "{}", stderr(&run));
+    }
+}
+
+#[test]
 fn reproducible_renders_are_equal_files_whatever_the_threads() {
     let (folder, script) = scene("ball.arsl", BALL);
     let render = |name: &str, threads: &str| {

@@ -27,5 +27,5 @@ pub use settings::Settings;
 
 /// The geometry of a scene in normal form, built for tracing.
 pub fn trace_scene(ir: &arsc_ir::Ir, strategy: arsc_accel::Strategy) -> Result<arsc_accel::Scene, AssemblyError> {
-    stage::build(geometry::lower(ir)?, strategy)
+    stage::build(geometry::lower(ir)?, strategy.into())
 }

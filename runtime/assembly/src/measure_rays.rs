@@ -35,7 +35,7 @@ pub struct RayMeasurement {
     /// By rows from the top.
     pub sights: Vec<Sight>,
     pub shadow_rays: u64,
-    /// Mean over primary rays of the leaves that were intersected.
+    /// Mean over primary rays of the leaves and surfaces that were tested.
     pub tests_per_ray: f64,
     /// Of each repetition, by the caller's clock.
     pub seconds: Vec<f64>,
@@ -126,8 +126,8 @@ fn center(x: u32, y: u32) -> DVec2 {
     DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
 }
 
-/// Over pixels spread evenly.
-fn tests_per_ray(scene: &Scene, camera: &Camera) -> f64 {
+/// Leaves and surfaces that a camera ray is tested against: the mean over pixels spread evenly.
+pub fn tests_per_ray(scene: &Scene, camera: &Camera) -> f64 {
     let [width, height] = camera.resolution();
     let pixels = (width * height) as usize;
     let step = pixels.div_ceil(COUNTED).max(1);

@@ -13,7 +13,7 @@ use arsc_ir::{Action, Ir};
 use arsc_render::{PathTraceSettings, path_trace};
 
 use crate::stage::{Stage, accel_strategy};
-use crate::{AssemblyError, Host, Settings};
+use crate::{AssemblyError, Host, Settings, measure_rays};
 
 /// What a run of the sequence gave.
 #[derive(Clone, Debug, Default)]
@@ -28,10 +28,13 @@ pub struct Outcome {
 /// One `path_trace`.
 #[derive(Clone, Debug)]
 pub struct RenderReport {
+    pub strategy: arsc_accel::Strategy,
     /// Building the scene for tracing.
     pub build_seconds: f64,
     /// What was built.
     pub scene: arsc_accel::BuildStats,
+    /// Mean over camera rays, if it was asked for.
+    pub tests_per_ray: Option<f64>,
     pub seconds: f64,
     pub camera_paths: u64,
     /// Samples per pixel, fewest and most.
@@ -174,7 +177,10 @@ impl Machine<'_> {
         let seconds = self.host.seconds() - start;
         self.outcome.interrupted |= progress.cancelled();
         drop(progress);
+        let count = || measure_rays::tests_per_ray(&world.geometry, &camera);
         let report = RenderReport {
+            strategy,
+            tests_per_ray: self.settings.statistics.then(count),
             build_seconds: self.stage.build_seconds(),
             scene: *world.geometry.stats(),
             seconds,

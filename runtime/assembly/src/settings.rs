@@ -1,6 +1,6 @@
 //! What a run is asked for besides what the script says.
 
-use arsc_accel::Strategy;
+use arsc_accel::{Budget, Strategy};
 
 use crate::AssemblyError;
 
@@ -17,6 +17,8 @@ pub struct Settings {
     /// Pixels x0, y0, x1, y1 (end exclusive); the rest stays black.
     pub crop: Option<[u32; 4]>,
     pub strategy: Option<Strategy>,
+    /// For the cells of all solids.
+    pub budget: Budget,
     /// Threads; `None` for as many as the machine has.
     pub threads: Option<usize>,
     /// Names the pictures of scripts without actions.
@@ -25,6 +27,8 @@ pub struct Settings {
     pub metadata: Vec<(String, String)>,
     /// Write timings into pictures; without, equal runs give equal files.
     pub timings: bool,
+    /// Count the tests of camera rays after each render.
+    pub statistics: bool,
 }
 
 impl Settings {

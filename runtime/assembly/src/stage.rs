@@ -51,7 +51,7 @@ impl<'a> Stage<'a> {
         let materials = materials::lower(self.ir)?;
         let (lights, environments) = lights::lower(self.ir)?;
         let geometry = self.geometry.clone();
-        let scene = self.pool.install(|| build(geometry, strategy))?;
+        let scene = self.pool.install(|| build(geometry, BuildOptions { strategy, budget: self.settings.budget }))?;
         let world = Arc::new(self.pool.install(|| World::new(scene, materials, lights, environments)));
         let seconds = self.host.seconds() - start;
         *self.built.borrow_mut() = Some(Built { strategy, world: world.clone(), seconds });
@@ -102,8 +102,8 @@ impl<'a> Stage<'a> {
 }
 
 /// The scene of `geometry` for tracing.
-pub fn build(geometry: SceneGeometry, strategy: Strategy) -> Result<Scene, AssemblyError> {
-    Scene::build(geometry, BuildOptions::from(strategy)).map_err(|source| AssemblyError::Accel(Box::new(source)))
+pub fn build(geometry: SceneGeometry, options: BuildOptions) -> Result<Scene, AssemblyError> {
+    Scene::build(geometry, options).map_err(|source| AssemblyError::Accel(Box::new(source)))
 }
 
 /// Bounds of a Boolean tree from those of its leaves: not the tightest, never too tight.

@@ -47,6 +47,21 @@ pub fn resolution(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
+/// Bytes: a number with K, M, G or T (thousands) behind it, or nothing.
+pub fn size(text: &str) -> Result<usize, String> {
+    let text = text.trim().trim_end_matches(['B', 'b']);
+    let (digits, unit) = match text.char_indices().last() {
+        Some((at, letter)) if letter.is_ascii_alphabetic() => (&text[..at], letter.to_ascii_uppercase()),
+        _ => (text, ' '),
+    };
+    let factor = [(' ', 1.0), ('K', 1e3), ('M', 1e6), ('G', 1e9), ('T', 1e12)].into_iter().find(|(u, _)| *u == unit);
+    let number = digits.trim().parse::<f64>().ok().filter(|n| n.is_finite() && *n >= 0.0);
+    match (factor, number) {
+        (Some((_, factor)), Some(number)) => Ok((number * factor) as usize),
+        _ => Err("expected a number of bytes, for example 64k, 500M or 2G".into()),
+    }
+}
+
 /// `x0,y0,x1,y1`, pixels from the upper left corner, the end excluded.
 pub fn crop(text: &str) -> Result<[u32; 4], String> {
     let numbers: Option<Vec<u32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
@@ -69,6 +84,10 @@ mod tests {
         assert_eq!(crop("1,2,3,4"), Ok([1, 2, 3, 4]));
         for slip in ["1,2,3", "3,2,1,4", "1,2,3,4,5", "", "1,2,3,2"] {
             assert!(crop(slip).is_err(), "{slip}");
+        }
+        assert_eq!((size("12"), size("1.5k"), size("2 MB")), (Ok(12), Ok(1500), Ok(2_000_000)));
+        for slip in ["", "M", "-1", "1x", "nan", "1e400"] {
+            assert!(size(slip).is_err(), "{slip}");
         }
         assert_eq!(assignment("a = b=c"), Ok(("a".into(), "b=c".into())));
         assert!(assignment("a").is_err() && assignment("=1").is_err() && assignment("a=").is_err());

@@ -11,8 +11,9 @@ use crate::compile::compile;
 use crate::exit::Exit;
 use crate::failure::failure;
 use crate::host::Machine;
-use crate::progress::{count, seconds};
+use crate::progress::count;
 use crate::render::RenderSettings;
+use crate::statistics::short;
 use crate::{bench_rays, bug};
 
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,9 +156,4 @@ pub fn print_table(rows: &[Vec<String>]) {
         }
         println!("{text}");
     }
-}
-
-/// Milliseconds below a second.
-pub fn short(s: f64) -> String {
-    if s < 1.0 { format!("{:.1} ms", 1e3 * s) } else { seconds(s) }
 }

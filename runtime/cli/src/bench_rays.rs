@@ -5,13 +5,14 @@ use std::path::Path;
 use arsc_assembly::{RayMeasurement, Sight, measure_rays};
 use serde::Serialize;
 
-use crate::bench::{Args, Format, print_table, short};
+use crate::bench::{Args, Format, print_table};
 use crate::bug;
 use crate::compile::compile;
 use crate::exit::Exit;
 use crate::failure::failure;
 use crate::host::Machine;
 use crate::progress::count;
+use crate::statistics::short;
 
 #[derive(Serialize)]
 struct Line {
@@ -67,7 +68,7 @@ fn measure(scene: &Path, args: &Args) -> Result<Line, Exit> {
     }
     Ok(Line {
         scene: compiled.name,
-        csg: format!("{:?}", settings.strategy.unwrap_or_default()).to_lowercase(),
+        csg: settings.strategy.unwrap_or_default().name().to_owned(),
         resolution: measured.resolution,
         primary_rays: measured.sights.len(),
         hits: measured.hits(),

@@ -21,6 +21,7 @@ mod probe;
 mod progress;
 mod render;
 mod report;
+mod statistics;
 
 use clap::{Parser, Subcommand};
 

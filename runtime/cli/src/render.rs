@@ -11,8 +11,7 @@ use crate::exit::Exit;
 use crate::failure::failure;
 use crate::files::Output;
 use crate::host::Machine;
-use crate::progress::{count, seconds};
-use crate::{bug, interrupt};
+use crate::{bug, interrupt, statistics};
 
 /// How CSG is traced; all give the same picture.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,9 +76,25 @@ pub struct RenderSettings {
     /// How CSG is traced
     #[arg(long, value_enum)]
     pub csg: Option<Csg>,
+
+    /// Most cells for all solids together: with fewer the picture is the same, and slower
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub max_cells: Option<usize>,
+
+    /// Most memory for cells, such as 500M
+    #[arg(long, value_name = "SIZE", value_parser = args::size, allow_negative_numbers = true)]
+    pub max_cell_memory: Option<usize>,
 }
 
 impl RenderSettings {
+    fn budget(&self) -> arsc_accel::Budget {
+        let unlimited = arsc_accel::Budget::UNLIMITED;
+        arsc_accel::Budget {
+            cells: self.max_cells.unwrap_or(unlimited.cells),
+            bytes: self.max_cell_memory.unwrap_or(unlimited.bytes),
+        }
+    }
+
     pub fn to_settings(&self) -> Settings {
         Settings {
             samples: self.samples,
@@ -88,6 +103,7 @@ impl RenderSettings {
             resolution: self.resolution,
             crop: self.crop,
             strategy: self.csg.map(Into::into),
+            budget: self.budget(),
             threads: self.threads.map(usize::from),
             ..Settings::default()
         }
@@ -111,9 +127,9 @@ pub struct Args {
     #[arg(short, long)]
     quiet: bool,
 
-    /// Prints times, rates and counts at the end
-    #[arg(long)]
-    stats: bool,
+    /// Prints what was built for tracing, times and rates at the end
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "text")]
+    stats: Option<statistics::Format>,
 
     /// Leaves timings and the command line out of the pictures: equal renders give equal files
     #[arg(long)]
@@ -150,7 +166,8 @@ fn settings(args: &Args, scene: &Scene) -> Settings {
         metadata.push(("commandLine".to_owned(), format!("arsc {}", words.join(" "))));
     }
     let timings = !args.reproducible;
-    Settings { scene_name: scene.name.clone(), metadata, timings, ..args.settings.to_settings() }
+    let statistics = args.stats.is_some();
+    Settings { scene_name: scene.name.clone(), metadata, timings, statistics, ..args.settings.to_settings() }
 }
 
 fn script_seed(ir: &Ir) -> u64 {
@@ -196,8 +213,8 @@ fn foreign_picture(path: &Path) -> Option<String> {
 }
 
 fn conclude(args: &Args, outcome: &Outcome) -> Exit {
-    if args.stats {
-        statistics(outcome);
+    if let Some(format) = args.stats {
+        statistics::print(outcome, format);
     }
     let rejected: u64 = outcome.renders.iter().map(|render| render.rejected).sum();
     if rejected > 0 {
@@ -216,18 +233,4 @@ fn conclude(args: &Args, outcome: &Outcome) -> Exit {
         return Exit::Interrupted;
     }
     Exit::Clean
-}
-
-fn statistics(outcome: &Outcome) {
-    for render in &outcome.renders {
-        let scene = &render.scene;
-        let rate = render.camera_paths as f64 / render.seconds.max(1e-9);
-        eprintln!("solids         {} and {} instances", scene.solids, scene.instances);
-        eprintln!("surfaces       {}", scene.surfaces);
-        eprintln!("primitives     {} in {} cells", scene.primitives, scene.cells);
-        eprintln!("memory         {}B for tracing", count(scene.bytes as f64));
-        eprintln!("build          {}", seconds(render.build_seconds));
-        eprintln!("render         {}", seconds(render.seconds));
-        eprintln!("camera paths   {} ({} samples/s)", count(render.camera_paths as f64), count(rate));
-    }
 }
