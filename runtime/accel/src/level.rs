@@ -91,6 +91,11 @@ impl Level {
         Level { solids, tracer }
     }
 
+    /// Nothing is to be left to Embree.
+    pub fn is_native(&self) -> bool {
+        matches!(self.tracer, Tracer::Native(_))
+    }
+
     /// Number of primitives for Embree.
     pub fn primitive_count(&self) -> usize {
         self.tracer.get().primitive_count()

@@ -16,6 +16,7 @@ use crate::nearest::{Candidate, Target};
 use crate::query::{Mode, Query, Scratch};
 use crate::solid::SolidModel;
 use crate::strategies::oracle;
+use crate::strategies::plain::Plain;
 use crate::surfaces::SurfaceModel;
 use crate::transition::Transition;
 use crate::world::{InstanceModel, World, device};
@@ -137,7 +138,9 @@ impl Scene {
             surfaces: geometry.surfaces.len(),
             primitives: plan.parts.len(),
             cells,
-            bytes: own_bytes + device()?.bytes().saturating_sub(before),
+            bytes: own_bytes
+                + world.callbacks().plain.as_ref().map_or(0, Plain::bytes)
+                + device()?.bytes().saturating_sub(before),
             build_time: start.elapsed(),
         };
         let Plan { members, parts, bounds, bounded } = plan;

@@ -15,6 +15,7 @@ use crate::frame::Frame;
 use crate::level::{Level, Prototype};
 use crate::nearest::{Candidate, Target};
 use crate::query::{Extent, Mode, Query, View};
+use crate::strategies::plain::{Item, Plain};
 use crate::surfaces::{Flat, SurfaceModel, Triangles};
 
 /// What a geometry of the Embree scene is; indexed by [`GeometryId`].
@@ -76,6 +77,8 @@ pub struct World {
     placed: Vec<u32>,
     open_instances: Vec<u32>,
     open_surfaces: Vec<u32>,
+    /// Strategy `native`: all surfaces and instances that are finite.
+    pub plain: Option<Plain>,
     extent: Extent,
 }
 
@@ -113,6 +116,7 @@ impl World {
             placed: vec![],
             open_instances: vec![],
             open_surfaces: vec![],
+            plain: None,
             extent: Extent::new(Aabb::EMPTY),
         };
         let mut bounds = world.level.bounds();
@@ -137,10 +141,50 @@ impl World {
             }
         }
         world.extent = Extent::new(bounds);
-        for surface in finite_surfaces {
-            world.add_surface(surface, &mut native);
+        if world.level.is_native() {
+            world.plain = Some(world.plain_items(&finite_surfaces));
+            world.placed.clear();
+        } else {
+            for surface in finite_surfaces {
+                world.add_surface(surface, &mut native);
+            }
         }
         world.commit(&native)
+    }
+
+    /// The placed instances and these surfaces in a tree of our own.
+    fn plain_items(&self, surfaces: &[u32]) -> Plain {
+        let instance = |&instance: &u32| (Item::Instance { instance }, self.instances[instance as usize].bounds());
+        let mut items: Vec<(Item, Aabb)> = self.placed.iter().map(instance).collect();
+        for &surface in surfaces {
+            match &self.surfaces[surface as usize] {
+                SurfaceModel::Flat(_) => {
+                    items.push((Item::Flat { surface }, self.surfaces[surface as usize].bounds()));
+                }
+                SurfaceModel::Triangles(mesh) => items.extend((0..mesh.triangles.len()).map(|triangle| {
+                    let corners = mesh.corners(triangle);
+                    let bounds = corners.iter().fold(Aabb::EMPTY, |hull, &p| hull.union(&Aabb::new(p, p)));
+                    (Item::Triangle { surface, triangle: triangle as u32 }, bounds)
+                })),
+            }
+        }
+        Plain::build(items)
+    }
+
+    fn visit_item(&self, item: Item, query: &mut Query) {
+        match item {
+            Item::Instance { instance } => self.instances[instance as usize].visit(query),
+            Item::Flat { surface } => {
+                if let SurfaceModel::Flat(flat) = &self.surfaces[surface as usize] {
+                    self.visit_flat(surface, flat, query);
+                }
+            }
+            Item::Triangle { surface, triangle } => {
+                if let SurfaceModel::Triangles(mesh) = &self.surfaces[surface as usize] {
+                    self.visit_triangle(surface, mesh, triangle, query);
+                }
+            }
+        }
     }
 
     fn add_surface(&mut self, surface: u32, native: &mut Native) {
@@ -199,7 +243,10 @@ impl World {
         if query.blocked {
             return;
         }
-        this.level.traverse(scene, &this.extent, query);
+        match &this.plain {
+            Some(plain) => plain.visit(query, |item, query| this.visit_item(item, query)),
+            None => this.level.traverse(scene, &this.extent, query),
+        }
     }
 
     fn visit_open(&self, query: &mut Query) {

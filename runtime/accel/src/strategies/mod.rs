@@ -27,6 +27,8 @@ mod members;
 mod native;
 mod operators;
 pub mod oracle;
+pub mod plain;
+mod scene_tree;
 mod tree;
 mod whole;
 

@@ -24,6 +24,8 @@ pub struct WholeScratch {
     pub open: Vec<Open>,
     /// Leaves that a traversal has come to: solid and leaf.
     pub met: Vec<(u32, u32)>,
+    /// Boxes of [`plain`](super::plain) that the ray passes.
+    pub items: Vec<u32>,
 }
 
 impl WholeScratch {
