@@ -4,7 +4,8 @@ use arsc_diagnostics::Span;
 use arsc_geometry::{DAffine3, Shape};
 
 use crate::{
-    Attributes, Bsdf, Camera, Emitter, Environment, Ir, Leaf, Light, Node, NodeId, NodeKind, Precedence, Surface,
+    Attributes, Bsdf, Camera, Emitter, Environment, Ir, Leaf, Light, Medium, Node, NodeId, NodeKind, Precedence,
+    Surface,
 };
 
 /// Collects nodes; [`Builder::finish`] names the root.
@@ -27,6 +28,7 @@ impl Builder {
                 root: NodeId(0),
                 bsdfs: Vec::new(),
                 emitters: Vec::new(),
+                media: Vec::new(),
                 materials: Vec::new(),
                 camera: None,
                 actions: Vec::new(),
@@ -99,6 +101,12 @@ impl Builder {
     pub fn emitter(&mut self, emitter: Emitter) -> u32 {
         self.ir.emitters.push(emitter);
         self.ir.emitters.len() as u32 - 1
+    }
+
+    /// Index for [`Attributes::medium`].
+    pub fn medium(&mut self, medium: Medium) -> u32 {
+        self.ir.media.push(medium);
+        self.ir.media.len() as u32 - 1
     }
 
     pub fn camera(&mut self, camera: Camera) {

@@ -14,6 +14,7 @@ mod camera;
 mod graph;
 mod light;
 mod material;
+mod medium;
 mod node;
 mod print;
 mod read;
@@ -27,6 +28,7 @@ pub use builder::Builder;
 pub use camera::{Camera, Filter, Projection};
 pub use light::{Environment, Light};
 pub use material::{Attributes, Bsdf, CutRule, Emitter, Material, MaterialId};
+pub use medium::{Density, Medium, PhaseFunction};
 pub use node::{Leaf, Node, NodeId, NodeKind, Precedence, Surface};
 pub use read::{Meshes, ReadError, read, read_with};
 pub use verify::{Violation, verify};
@@ -44,6 +46,7 @@ pub struct Ir {
     /// What attributes and leaves refer to.
     pub bsdfs: Vec<Bsdf>,
     pub emitters: Vec<Emitter>,
+    pub media: Vec<Medium>,
     /// Filled by the pass that propagates attributes to leaves.
     pub materials: Vec<Material>,
     pub camera: Option<Camera>,

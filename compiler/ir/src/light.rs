@@ -15,6 +15,8 @@ pub enum Light {
 pub enum Environment {
     /// W m^-2 sr^-1 nm^-1 from everywhere.
     Constant { radiance: Spectrum },
+    /// What fills all space that no solid fills: an entry of [`crate::Ir::media`]. The first one counts.
+    Medium { medium: u32 },
     /// Hosek and Wilkie 2012, with the solar disc of 2013 unless `solar_disc` is off; z is up.
     HosekWilkie { turbidity: f64, ground_albedo: f64, sun: DVec3, solar_disc: bool, scale: f64 },
 }

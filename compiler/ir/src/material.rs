@@ -1,4 +1,4 @@
-//! Attributes: what a surface does with light.
+//! Attributes: what a surface does with light, and what fills a solid.
 
 use arsc_spectral::Spectrum;
 
@@ -30,6 +30,8 @@ pub enum Bsdf {
         eta: Spectrum,
         k: Spectrum,
     },
+    /// No interface: light goes straight on, into whatever fills the solid.
+    Inert,
 }
 
 /// Emission of a surface towards the side of its normal (solids: outwards), Lambertian.
@@ -55,14 +57,32 @@ pub enum CutRule {
 pub struct Attributes {
     pub bsdf: Option<u32>,
     pub emitter: Option<u32>,
+    /// Fills solids.
+    pub medium: Option<u32>,
     /// For walls cut into the subtree by a subtraction outside of it.
     pub cut: Option<CutRule>,
 }
 
 /// What a leaf ends up with.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Material {
-    /// `None`: the default, Lambert of reflectance 0.5.
+    /// `None`: the default, Lambert of reflectance 0.5; with a medium, [`Bsdf::Inert`].
     pub bsdf: Option<u32>,
     pub emitter: Option<u32>,
+    /// What fills the solid behind this wall.
+    pub medium: Option<u32>,
+    /// The bsdf whose index of refraction holds behind this wall, where it is not the wall's own: in a cut wall.
+    pub inside: Option<u32>,
+}
+
+impl Bsdf {
+    /// Light passes through a closed wall of it, so that it matters what fills the solid.
+    pub fn is_transmissive(&self) -> bool {
+        matches!(self, Bsdf::Dielectric { .. } | Bsdf::Inert)
+    }
+
+    /// It is an interface between two indices of refraction.
+    pub fn has_index(&self) -> bool {
+        matches!(self, Bsdf::Dielectric { .. })
+    }
 }

@@ -3,6 +3,7 @@
 //! ```text
 //! ir 1
 //! bsdf b0 = lambert(reflectance: constant(0.4))
+//! medium v0 = medium(absorption: constant(0.1), scattering: constant(2.0), emission: constant(0.0), phase: isotropic(), density: uniform())
 //! material m0 = material(bsdf: b0)
 //! %0 = sphere(radius: 1.0, material: m0) @0:10..19
 //! %1 = box(min: [0.0, 0.0, 0.0], max: [1.0, 1.0, 1.0], at: [0.0, 0.0, 2.5], material: m0) @0:30..35
@@ -25,8 +26,8 @@ use arsc_spectral::Spectrum;
 use crate::shape_text::open_shape;
 use crate::write::{Call, Float, Floats};
 use crate::{
-    Action, Attributes, Bsdf, Camera, CutRule, Emitter, Environment, Exposure, Filter, Ir, Leaf, Light, Material,
-    NodeId, NodeKind, Precedence, Projection, Surface,
+    Action, Attributes, Bsdf, Camera, CutRule, Density, Emitter, Environment, Exposure, Filter, Ir, Leaf, Light,
+    Material, Medium, NodeId, NodeKind, PhaseFunction, Precedence, Projection, Surface,
 };
 
 impl Display for Ir {
@@ -37,6 +38,9 @@ impl Display for Ir {
         }
         for (id, emitter) in self.emitters.iter().enumerate() {
             writeln!(f, "emitter e{id} = {}", Text(emitter))?;
+        }
+        for (id, medium) in self.media.iter().enumerate() {
+            writeln!(f, "medium v{id} = {}", Text(medium))?;
         }
         for (id, material) in self.materials.iter().enumerate() {
             writeln!(f, "material m{id} = {}", Text(material))?;
@@ -127,6 +131,7 @@ impl Display for Text<'_, Bsdf> {
             Bsdf::Mirror { reflectance } => Call::new(f, "mirror")?.arg("reflectance", Text(reflectance))?.end(),
             Bsdf::Dielectric { ior } => Call::new(f, "dielectric")?.arg("ior", Text(ior))?.end(),
             Bsdf::Conductor { eta, k } => Call::new(f, "conductor")?.arg("eta", Text(eta))?.arg("k", Text(k))?.end(),
+            Bsdf::Inert => Call::new(f, "inert")?.end(),
         }
     }
 }
@@ -138,10 +143,50 @@ impl Display for Text<'_, Emitter> {
     }
 }
 
+impl Display for Text<'_, Medium> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Medium { absorption, scattering, emission, phase, density } = self.0;
+        Call::new(f, "medium")?
+            .arg("absorption", Text(absorption))?
+            .arg("scattering", Text(scattering))?
+            .arg("emission", Text(emission))?
+            .arg("phase", Text(phase))?
+            .arg("density", Text(density))?
+            .end()
+    }
+}
+
+impl Display for Text<'_, PhaseFunction> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match *self.0 {
+            PhaseFunction::Isotropic => Call::new(f, "isotropic")?.end(),
+            PhaseFunction::HenyeyGreenstein { g } => Call::new(f, "henyey_greenstein")?.float("g", g)?.end(),
+            PhaseFunction::Rayleigh { depolarisation } => {
+                Call::new(f, "rayleigh")?.float("depolarisation", depolarisation)?.end()
+            }
+        }
+    }
+}
+
+impl Display for Text<'_, Density> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Density::Uniform => Call::new(f, "uniform")?.end(),
+            Density::Gaussian { center, sigma } => {
+                Call::new(f, "gaussian")?.point("center", *center)?.float("sigma", *sigma)?.end()
+            }
+            Density::Exponential { ground, height } => {
+                Call::new(f, "exponential")?.float("ground", *ground)?.float("height", *height)?.end()
+            }
+        }
+    }
+}
+
 impl Display for Text<'_, Material> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Material { bsdf, emitter } = *self.0;
-        Call::new(f, "material")?.index("bsdf", "b", bsdf)?.index("emitter", "e", emitter)?.end()
+        let Material { bsdf, emitter, medium, inside } = *self.0;
+        let call = Call::new(f, "material")?.index("bsdf", "b", bsdf)?.index("emitter", "e", emitter)?;
+        call.index("medium", "v", medium)?.index("inside", "b", inside)?.end()
     }
 }
 
@@ -160,13 +205,14 @@ impl Display for Text<'_, NodeKind> {
             NodeKind::Transform { parent_from_child, child } => {
                 Call::new(f, "transform")?.value(Text(child))?.map(parent_from_child)?.end()
             }
-            NodeKind::Attributes { attributes: Attributes { bsdf, emitter, cut }, precedence, child } => {
+            NodeKind::Attributes { attributes: Attributes { bsdf, emitter, medium, cut }, precedence, child } => {
                 let name = match precedence {
                     Precedence::Inner => "with",
                     Precedence::Outer => "override",
                 };
                 let call = Call::new(f, name)?.value(Text(child))?;
                 let call = call.index("bsdf", "b", *bsdf)?.index("emitter", "e", *emitter)?;
+                let call = call.index("medium", "v", *medium)?;
                 match cut {
                     None => call.end(),
                     Some(CutRule::Inherit) => call.arg("cut", "inherit")?.end(),
@@ -227,6 +273,7 @@ impl Display for Text<'_, Environment> {
             Environment::Constant { radiance } => {
                 Call::new(f, "constant_environment")?.arg("radiance", Text(radiance))?.end()
             }
+            Environment::Medium { medium } => Call::new(f, "atmosphere")?.index("medium", "v", Some(*medium))?.end(),
             Environment::HosekWilkie { turbidity, ground_albedo, sun, solar_disc, scale } => {
                 Call::new(f, "hosek_wilkie")?
                     .float("turbidity", *turbidity)?

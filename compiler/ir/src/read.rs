@@ -14,8 +14,9 @@ use crate::args::{Args, float, float_list, floats, index, integer};
 use crate::shape_text::shape;
 use crate::term::{Cursor, Fault, Term, TermKind};
 use crate::{
-    Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Emitter, Environment, Exposure, Filter, Ir, Leaf, Light,
-    Material, MaterialId, Node, NodeId, NodeKind, Precedence, Projection, Strategy, Surface,
+    Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Density, Emitter, Environment, Exposure, Filter, Ir, Leaf,
+    Light, Material, MaterialId, Medium, Node, NodeId, NodeKind, PhaseFunction, Precedence, Projection, Strategy,
+    Surface,
 };
 
 /// Why a text is no IR; one-based position, the column counted in characters.
@@ -67,6 +68,7 @@ fn read_statements(text: &str, meshes: Meshes<'_>) -> Result<Ir, Fault> {
         root: NodeId(u32::MAX),
         bsdfs: Vec::new(),
         emitters: Vec::new(),
+        media: Vec::new(),
         materials: Vec::new(),
         camera: None,
         actions: Vec::new(),
@@ -101,6 +103,10 @@ fn statement(cursor: &mut Cursor, ir: &mut Ir, meshes: Meshes<'_>) -> Result<(),
         "emitter" => {
             let term = definition(cursor, 'e', ir.emitters.len())?;
             ir.emitters.push(emitter(term)?);
+        }
+        "medium" => {
+            let term = definition(cursor, 'v', ir.media.len())?;
+            ir.media.push(medium(term)?);
         }
         "material" => {
             let term = definition(cursor, 'm', ir.materials.len())?;
@@ -192,6 +198,7 @@ fn bsdf(term: Term) -> Result<Bsdf, Fault> {
         "mirror" => Bsdf::Mirror { reflectance: spectrum(args.take("reflectance")?)? },
         "dielectric" => Bsdf::Dielectric { ior: spectrum(args.take("ior")?)? },
         "conductor" => Bsdf::Conductor { eta: spectrum(args.take("eta")?)?, k: spectrum(args.take("k")?)? },
+        "inert" => Bsdf::Inert,
         _ => return args.unknown("bsdf"),
     };
     args.end()?;
@@ -208,6 +215,46 @@ fn emitter(term: Term) -> Result<Emitter, Fault> {
     Ok(emitter)
 }
 
+fn medium(term: Term) -> Result<Medium, Fault> {
+    let mut args = Args::new(term)?;
+    if args.name != "medium" {
+        return args.unknown("medium");
+    }
+    let medium = Medium {
+        absorption: spectrum(args.take("absorption")?)?,
+        scattering: spectrum(args.take("scattering")?)?,
+        emission: spectrum(args.take("emission")?)?,
+        phase: phase_function(args.take("phase")?)?,
+        density: density(args.take("density")?)?,
+    };
+    args.end()?;
+    Ok(medium)
+}
+
+fn phase_function(term: Term) -> Result<PhaseFunction, Fault> {
+    let mut args = Args::new(term)?;
+    let phase = match args.name {
+        "isotropic" => PhaseFunction::Isotropic,
+        "henyey_greenstein" => PhaseFunction::HenyeyGreenstein { g: args.float("g")? },
+        "rayleigh" => PhaseFunction::Rayleigh { depolarisation: args.float("depolarisation")? },
+        _ => return args.unknown("phase function"),
+    };
+    args.end()?;
+    Ok(phase)
+}
+
+fn density(term: Term) -> Result<Density, Fault> {
+    let mut args = Args::new(term)?;
+    let density = match args.name {
+        "uniform" => Density::Uniform,
+        "gaussian" => Density::Gaussian { center: args.point("center")?, sigma: args.float("sigma")? },
+        "exponential" => Density::Exponential { ground: args.float("ground")?, height: args.float("height")? },
+        _ => return args.unknown("density"),
+    };
+    args.end()?;
+    Ok(density)
+}
+
 fn material(term: Term, ir: &Ir) -> Result<Material, Fault> {
     let mut args = Args::new(term)?;
     if args.name != "material" {
@@ -215,8 +262,10 @@ fn material(term: Term, ir: &Ir) -> Result<Material, Fault> {
     }
     let bsdf = args.index("bsdf", 'b', ir.bsdfs.len())?;
     let emitter = args.index("emitter", 'e', ir.emitters.len())?;
+    let medium = args.index("medium", 'v', ir.media.len())?;
+    let inside = args.index("inside", 'b', ir.bsdfs.len())?;
     args.end()?;
-    Ok(Material { bsdf, emitter })
+    Ok(Material { bsdf, emitter, medium, inside })
 }
 
 fn node_kind(mut args: Args, ir: &Ir, meshes: Meshes<'_>) -> Result<NodeKind, Fault> {
@@ -239,6 +288,9 @@ fn node_kind(mut args: Args, ir: &Ir, meshes: Meshes<'_>) -> Result<NodeKind, Fa
         "constant_environment" => {
             NodeKind::Environment(Box::new(Environment::Constant { radiance: spectrum(args.take("radiance")?)? }))
         }
+        "atmosphere" => NodeKind::Environment(Box::new(Environment::Medium {
+            medium: index(&args.take("medium")?, 'v', ir.media.len())?,
+        })),
         "hosek_wilkie" => NodeKind::Environment(Box::new(Environment::HosekWilkie {
             turbidity: args.float("turbidity")?,
             ground_albedo: args.float("ground_albedo")?,
@@ -264,12 +316,13 @@ fn attributes(args: &mut Args, ir: &Ir, precedence: Precedence) -> Result<NodeKi
     let child = node_id(&args.next()?, ir)?;
     let bsdf = args.index("bsdf", 'b', ir.bsdfs.len())?;
     let emitter = args.index("emitter", 'e', ir.emitters.len())?;
+    let medium = args.index("medium", 'v', ir.media.len())?;
     let cut = match args.optional("cut") {
         None => None,
         Some(Term { kind: TermKind::Word("inherit"), .. }) => Some(CutRule::Inherit),
         Some(term) => Some(CutRule::Bsdf(index(&term, 'b', ir.bsdfs.len())?)),
     };
-    Ok(NodeKind::Attributes { attributes: Attributes { bsdf, emitter, cut }, precedence, child })
+    Ok(NodeKind::Attributes { attributes: Attributes { bsdf, emitter, medium, cut }, precedence, child })
 }
 
 fn leaf(args: &mut Args, ir: &Ir, meshes: Meshes<'_>) -> Result<Leaf, Fault> {
@@ -506,8 +559,13 @@ mod tests {
 
     fn any_recipe() -> impl Strategy2<Value = Recipe> {
         let cut = prop_oneof![Just(None), Just(Some(CutRule::Inherit)), Just(Some(CutRule::Bsdf(1)))];
-        let bundle = (prop::option::of(0..2u32), prop::option::of(0..1u32), cut)
-            .prop_map(|(bsdf, emitter, cut)| Attributes { bsdf, emitter, cut });
+        let (bsdf, emitter, medium) = (prop::option::of(0..2u32), prop::option::of(0..1u32), prop::option::of(0..3u32));
+        let bundle = (bsdf, emitter, medium, cut).prop_map(|(bsdf, emitter, medium, cut)| Attributes {
+            bsdf,
+            emitter,
+            medium,
+            cut,
+        });
         prop_oneof![
             4 => any_leaf().prop_map(Recipe::Leaf),
             4 => (0..4u8, prop::collection::vec(any::<usize>(), 1..4)).prop_map(|(kind, of)| Recipe::Boolean(kind, of)),
@@ -525,6 +583,22 @@ mod tests {
                 let mut b = Builder::new();
                 b.bsdf(Bsdf::OrenNayar { reflectance: tables.0.clone(), sigma: tables.2 });
                 b.bsdf(Bsdf::Conductor { eta: tables.0.clone(), k: tables.1.clone() });
+                let media = [
+                    (PhaseFunction::Isotropic, Density::Uniform),
+                    (
+                        PhaseFunction::HenyeyGreenstein { g: tables.2 },
+                        Density::Gaussian { center: DVec3::X, sigma: tables.2 },
+                    ),
+                    (
+                        PhaseFunction::Rayleigh { depolarisation: tables.2 },
+                        Density::Exponential { ground: -0.0, height: tables.2 },
+                    ),
+                ];
+                for (phase, density) in media {
+                    let (absorption, scattering) = (tables.0.clone(), tables.1.clone());
+                    b.medium(Medium { absorption, scattering, emission: tables.0.clone(), phase, density });
+                }
+                b.bsdf(Bsdf::Inert);
                 b.emitter(Emitter { radiance: tables.1, two_sided: numbers[0] % 2 == 0 });
                 for (i, recipe) in recipes.into_iter().enumerate() {
                     let origin = Span { source: SourceId(i as u32), start: numbers[1] / 2, end: u32::MAX };
@@ -548,6 +622,9 @@ mod tests {
                         }
                         Recipe::Sky(radiance, false) => {
                             NodeKind::Environment(Box::new(Environment::Constant { radiance }))
+                        }
+                        Recipe::Sky(_, true) if numbers[0] % 3 == 0 => {
+                            NodeKind::Environment(Box::new(Environment::Medium { medium: 2 }))
                         }
                         Recipe::Sky(_, true) => NodeKind::Environment(Box::new(Environment::HosekWilkie {
                             turbidity: tables.2,

@@ -9,7 +9,8 @@ use arsc_geometry::{DVec3, invert};
 use arsc_spectral::Spectrum;
 
 use crate::{
-    Attributes, Bsdf, Camera, CutRule, Environment, Ir, Leaf, Light, MaterialId, NodeId, NodeKind, Projection, Surface,
+    Attributes, Bsdf, Camera, CutRule, Density, Environment, Ir, Leaf, Light, MaterialId, Medium, NodeId, NodeKind,
+    PhaseFunction, Projection, Surface,
 };
 
 /// Spectra nest at most this deep, so that everybody may recurse into them.
@@ -41,8 +42,13 @@ pub fn verify(ir: &Ir) -> Result<(), Vec<Violation>> {
     for (id, emitter) in ir.emitters.iter().enumerate() {
         found.check(check_spectrum(&emitter.radiance), || format!("e{id}"));
     }
+    for (id, medium) in ir.media.iter().enumerate() {
+        found.check(check_medium(medium), || format!("v{id}"));
+    }
     for (id, material) in ir.materials.iter().enumerate() {
-        found.check(check_attributes(ir, material.bsdf, material.emitter), || format!("m{id}"));
+        let known = check_attributes(ir, material.bsdf, material.emitter, material.medium)
+            .and_then(|()| check_attributes(ir, material.inside, None, None));
+        found.check(known, || format!("m{id}"));
     }
     let mut contents: Vec<Contents> = Vec::with_capacity(ir.nodes.len());
     for id in 0..ir.nodes.len() {
@@ -110,19 +116,20 @@ fn check_node(ir: &Ir, id: usize, contents: &[Contents]) -> Check<Contents> {
             require(invert(parent_from_child).is_some(), "the map is not finite and invertible")?;
             Ok(below)
         }
-        NodeKind::Attributes { attributes: Attributes { bsdf, emitter, cut }, .. } => {
-            check_attributes(ir, *bsdf, *emitter)?;
+        NodeKind::Attributes { attributes: Attributes { bsdf, emitter, medium, cut }, .. } => {
+            check_attributes(ir, *bsdf, *emitter, *medium)?;
             if let Some(CutRule::Bsdf(bsdf)) = cut {
-                check_attributes(ir, Some(*bsdf), None)?;
+                check_attributes(ir, Some(*bsdf), None, None)?;
             }
             Ok(below)
         }
         NodeKind::Light(light) => check_light(light).map(|()| below),
-        NodeKind::Environment(environment) => check_environment(environment).map(|()| below),
+        NodeKind::Environment(environment) => check_environment(ir, environment).map(|()| below),
     }
 }
 
-fn check_attributes(ir: &Ir, bsdf: Option<u32>, emitter: Option<u32>) -> Check {
+fn check_attributes(ir: &Ir, bsdf: Option<u32>, emitter: Option<u32>, medium: Option<u32>) -> Check {
+    require(medium.is_none_or(|id| (id as usize) < ir.media.len()), "there is no such medium")?;
     require(bsdf.is_none_or(|id| (id as usize) < ir.bsdfs.len()), "there is no such bsdf")?;
     require(emitter.is_none_or(|id| (id as usize) < ir.emitters.len()), "there is no such emitter")
 }
@@ -179,9 +186,10 @@ fn check_light(light: &Light) -> Check {
     }
 }
 
-fn check_environment(environment: &Environment) -> Check {
+fn check_environment(ir: &Ir, environment: &Environment) -> Check {
     match environment {
         Environment::Constant { radiance } => check_spectrum(radiance),
+        Environment::Medium { medium } => check_attributes(ir, None, None, Some(*medium)),
         Environment::HosekWilkie { turbidity, ground_albedo, sun, scale, .. } => {
             require(is_unit(*sun), "the sun's direction is not a unit vector")?;
             require((1.0..=10.0).contains(turbidity), "the turbidity is not in 1..=10")?;
@@ -200,6 +208,31 @@ fn check_bsdf(bsdf: &Bsdf) -> Check {
         }
         Bsdf::Dielectric { ior } => check_spectrum(ior),
         Bsdf::Conductor { eta, k } => check_spectrum(eta).and(check_spectrum(k)),
+        Bsdf::Inert => Ok(()),
+    }
+}
+
+fn check_medium(medium: &Medium) -> Check {
+    check_spectrum(&medium.absorption)?;
+    check_spectrum(&medium.scattering)?;
+    check_spectrum(&medium.emission)?;
+    match medium.phase {
+        PhaseFunction::Isotropic => {}
+        PhaseFunction::HenyeyGreenstein { g } => require(g.abs() < 1.0, "the mean cosine is not in (-1, 1)")?,
+        PhaseFunction::Rayleigh { depolarisation } => {
+            require((0.0..=0.5).contains(&depolarisation), "the depolarisation is not in 0..=1/2")?;
+        }
+    }
+    match &medium.density {
+        Density::Uniform => Ok(()),
+        Density::Gaussian { center, sigma } => {
+            require(center.is_finite(), "a position is not finite")?;
+            require(positive(*sigma), "a size is not positive and finite")
+        }
+        Density::Exponential { ground, height } => {
+            require(ground.is_finite(), "a position is not finite")?;
+            require(positive(*height), "a size is not positive and finite")
+        }
     }
 }
 
@@ -296,6 +329,19 @@ mod tests {
                 "%0: the direction is not a unit vector",
             ),
         ];
+        let medium =
+            "medium v0 = medium(absorption: constant(0.0), scattering: constant(1.0), emission: constant(0.0), ";
+        let media = [
+            ("phase: henyey_greenstein(g: 1.0), density: uniform())", "v0: the mean cosine is not in (-1, 1)"),
+            (
+                "phase: isotropic(), density: exponential(ground: 0.0, height: -1.0))",
+                "v0: a size is not positive and finite",
+            ),
+        ];
+        for (text, expected) in media {
+            let text = format!("{medium}{text}\n%0 = half_space() @0:0..1\nroot %0");
+            assert_eq!(violations(&text), [expected], "{text}");
+        }
         for (text, expected) in cases {
             assert_eq!(violations(text), [expected], "{text}");
         }

@@ -161,7 +161,7 @@ impl Folding<'_, '_> {
                 let environment = environment.clone();
                 let child = self.push(NodeKind::Environment(environment.clone()), origin);
                 match map {
-                    Some(map) if !matches!(*environment, Environment::Constant { .. }) => {
+                    Some(map) if !matches!(*environment, Environment::Constant { .. } | Environment::Medium { .. }) => {
                         self.log.fire("fold_into_light");
                         let linear = DAffine3 { translation: DVec3::ZERO, ..map };
                         self.place(child, linear, origin)

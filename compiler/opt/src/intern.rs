@@ -1,8 +1,8 @@
-//! Equal values get one index: bsdfs, emitters and materials.
+//! Equal values get one index: bsdfs, emitters, media and materials.
 
 use std::hash::{Hash, Hasher};
 
-use arsc_ir::{Bsdf, Emitter, Material, Spectrum};
+use arsc_ir::{Bsdf, Density, Emitter, Material, Medium, PhaseFunction, Spectrum};
 use rustc_hash::{FxHashMap, FxHasher};
 
 /// A value whose floats are compared as numbers and hashed by their bits.
@@ -96,6 +96,7 @@ impl Structural for Bsdf {
                 eta.structural_hash(hasher);
                 k.structural_hash(hasher);
             }
+            Bsdf::Inert => {}
         }
     }
 }
@@ -107,8 +108,26 @@ impl Structural for Emitter {
     }
 }
 
+impl Structural for Medium {
+    fn structural_hash(&self, hasher: &mut FxHasher) {
+        self.absorption.structural_hash(hasher);
+        self.scattering.structural_hash(hasher);
+        match self.phase {
+            PhaseFunction::Isotropic => {}
+            PhaseFunction::HenyeyGreenstein { g: x } | PhaseFunction::Rayleigh { depolarisation: x } => {
+                hash_f64(x, hasher);
+            }
+        }
+        match &self.density {
+            Density::Uniform => {}
+            Density::Gaussian { center, sigma } => hash_all(&[center.x, center.y, center.z, *sigma], hasher),
+            Density::Exponential { ground, height } => hash_all(&[*ground, *height], hasher),
+        }
+    }
+}
+
 impl Structural for Material {
     fn structural_hash(&self, hasher: &mut FxHasher) {
-        (self.bsdf, self.emitter).hash(hasher);
+        (self.bsdf, self.emitter, self.medium, self.inside).hash(hasher);
     }
 }

@@ -19,11 +19,14 @@
 //!   4. a *light*: `Light`, or `Transform` over a `Light`. `Distant` directions are in world space and have no
 //!      transform; a `Point` sits at the image of the origin, and its intensity does not depend on the map;
 //!   5. an *environment*: `Environment`, or `Transform` over an `Environment`, whose linear part maps directions of
-//!      the environment to the world (normalise after mapping; `Constant` never has one).
+//!      the environment to the world (normalise after mapping; `Constant` and `Medium` never have one).
 //! * Nodes of solids may be shared (one id, several parents): the graph is acyclic, and expanded to trees it has at
 //!   most [`Options::max_leaves`] leaves. The same node under two parents is the same solid twice.
 //! * Every leaf has `material: Some(id)`. [`arsc_ir::Ir::materials`] holds each material once.
 //!   Cut rules are resolved: the wall that a subtraction leaves shows the material of the subtracted leaf.
+//!   A solid that light gets into has one interior: all its materials name the same medium and the same index of
+//!   refraction behind their walls (the pass `fill_interiors`). Where such solids overlap, the earlier member fills
+//!   the common part and hides the walls of the later one.
 //! * No `Attributes` node is left, and no unreachable node.
 //! * Operands of Boolean nodes are in the order of precedence: where two faces coincide, the first operand's shows.
 //! * Solids come first in the group, in the order of their first part in the script; then surfaces, then lights
@@ -34,13 +37,15 @@
 //! The `scene` block collects *objects*: the operands of the root union. The opaque ones are one regularised union, so
 //! an object that reaches into another shows no wall inside of it, and the earlier object's face wins where two
 //! coincide. An object with a transmissive material stands alone, because a union would remove the wall between two
-//! different media (the pass `separate_media`). An explicit `a | b` within one object is always one solid.
+//! different media (the pass `separate_media`). An explicit `a | b` within one object is one solid, unless the
+//! two are filled differently.
 
 mod bound_unbounded;
 mod bounds;
 mod box_tree;
 mod counts;
 mod drop_operands;
+mod fill_interiors;
 mod flatten;
 mod fold_transforms;
 mod hoist;

@@ -29,7 +29,7 @@ pub fn check_normal_form(ir: &Ir) -> Result<(), String> {
         let role = role(ir, NodeId(id as u32), &roles).map_err(|message| format!("%{id} {message}"))?;
         roles.push(role);
     }
-    let mut seen: Vec<_> = ir.materials.iter().map(|material| (material.bsdf, material.emitter)).collect();
+    let mut seen: Vec<_> = ir.materials.iter().map(|m| (m.bsdf, m.emitter, m.medium, m.inside)).collect();
     seen.sort_unstable();
     if seen.windows(2).any(|pair| pair[0] == pair[1]) {
         return Err("a material is there twice".to_owned());
@@ -65,7 +65,7 @@ fn role(ir: &Ir, id: NodeId, roles: &[Role]) -> Result<Role, &'static str> {
             (Role::Solid, _) => Ok(Role::Instance),
             (Role::Light, NodeKind::Light(light)) if matches!(**light, Light::Point { .. }) => Ok(Role::Placed),
             (Role::Environment, NodeKind::Environment(environment))
-                if !matches!(**environment, Environment::Constant { .. }) =>
+                if !matches!(**environment, Environment::Constant { .. } | Environment::Medium { .. }) =>
             {
                 Ok(Role::Placed)
             }

@@ -41,6 +41,12 @@ pub const PASSES: &[Pass] = &[
         run: crate::split_lights::run,
     },
     Pass {
+        name: "fill_interiors",
+        summary: "give each transmissive solid one medium and index of refraction",
+        lowering: true,
+        run: crate::fill_interiors::run,
+    },
+    Pass {
         name: "share_subtrees",
         summary: "make equal subtrees one node",
         lowering: false,

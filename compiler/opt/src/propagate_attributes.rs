@@ -1,6 +1,6 @@
 //! Moves attributes to the leaves, resolves cut rules, and interns materials.
 //!
-//! For each kind of attribute (bsdf, emitter, cut rule) on its own: `with` nearest to the leaf wins; an `override`
+//! For each kind of attribute (bsdf, emitter, medium, cut rule) on its own: `with` nearest to the leaf wins; an `override`
 //! beats every `with` inside of it, and the outermost `override` wins. A material that a leaf already has counts as
 //! a `with` at the leaf.
 //!
@@ -17,7 +17,7 @@
 
 use arsc_diagnostics::Span;
 use arsc_geometry::DAffine3;
-use arsc_ir::{Attributes, CutRule, Ir, Leaf, Material, MaterialId, Node, NodeId, NodeKind, Precedence};
+use arsc_ir::{Attributes, CutRule, Environment, Ir, Leaf, Material, MaterialId, Node, NodeId, NodeKind, Precedence};
 use rustc_hash::FxHashMap;
 
 use crate::intern::Interner;
@@ -102,6 +102,7 @@ struct Propagation<'a, 'b> {
     results: Vec<NodeId>,
     bsdf: Vec<u32>,
     emitter: Vec<u32>,
+    medium: Vec<u32>,
     materials: Interner<Material>,
     log: &'a mut Log<'b>,
 }
@@ -111,6 +112,8 @@ pub(crate) fn run(ir: Ir, log: &mut Log) -> Ir {
     let bsdf = ir.bsdfs.iter().map(|bsdf| bsdfs.intern(bsdf.clone())).collect();
     let mut emitters = Interner::new();
     let emitter = ir.emitters.iter().map(|emitter| emitters.intern(emitter.clone())).collect();
+    let mut media = Interner::new();
+    let medium = ir.media.iter().map(|medium| media.intern(medium.clone())).collect();
     let mut propagation = Propagation {
         uses: ir.uses(),
         has_inherit: has_inherit(&ir),
@@ -122,6 +125,7 @@ pub(crate) fn run(ir: Ir, log: &mut Log) -> Ir {
         results: Vec::new(),
         bsdf,
         emitter,
+        medium,
         materials: Interner::new(),
         log,
     };
@@ -135,6 +139,7 @@ pub(crate) fn run(ir: Ir, log: &mut Log) -> Ir {
         root,
         bsdfs: bsdfs.values,
         emitters: emitters.values,
+        media: media.values,
         materials,
         camera: ir.camera,
         actions: ir.actions,
@@ -206,7 +211,14 @@ impl Propagation<'_, '_> {
                 let kind = NodeKind::Leaf(Box::new(self.leaf(leaf, &state)));
                 self.finish(id, state, kind);
             }
-            NodeKind::Light(_) | NodeKind::Environment(_) => self.finish(id, state, node.kind.clone()),
+            NodeKind::Environment(environment) => {
+                let environment = match **environment {
+                    Environment::Medium { medium } => Environment::Medium { medium: self.medium[medium as usize] },
+                    ref other => other.clone(),
+                };
+                self.finish(id, state, NodeKind::Environment(Box::new(environment)));
+            }
+            NodeKind::Light(_) => self.finish(id, state, node.kind.clone()),
             NodeKind::Attributes { attributes, precedence, child } => {
                 let state = self.attach(state, *attributes, *precedence);
                 self.tasks.push(Task::Enter { node: *child, state });
@@ -273,12 +285,14 @@ impl Propagation<'_, '_> {
                 let attached = &mut state.attached;
                 attached.bsdf = attributes.bsdf.or(attached.bsdf);
                 attached.emitter = attributes.emitter.or(attached.emitter);
+                attached.medium = attributes.medium.or(attached.medium);
                 attached.cut = attributes.cut.or(attached.cut);
             }
             Precedence::Outer => {
                 let forced = &mut state.forced;
                 forced.bsdf = forced.bsdf.or(attributes.bsdf);
                 forced.emitter = forced.emitter.or(attributes.emitter);
+                forced.medium = forced.medium.or(attributes.medium);
                 forced.cut = forced.cut.or(attributes.cut);
             }
         }
@@ -297,7 +311,7 @@ impl Propagation<'_, '_> {
             }
             CutRule::Bsdf(bsdf) => {
                 self.log.fire("cut_with");
-                Some(self.material(state.forced.bsdf.or(Some(bsdf)), state.forced.emitter))
+                Some(self.material(state.forced.bsdf.or(Some(bsdf)), state.forced.emitter, None))
             }
         }
     }
@@ -308,15 +322,18 @@ impl Propagation<'_, '_> {
         let own = material.map(|id| &self.source.materials[id.0 as usize]);
         let bsdf = state.forced.bsdf.or(own.and_then(|own| own.bsdf)).or(state.attached.bsdf);
         let emitter = state.forced.emitter.or(own.and_then(|own| own.emitter)).or(state.attached.emitter);
-        *material = Some(state.cover.unwrap_or_else(|| self.material(bsdf, emitter)));
+        let medium = state.forced.medium.or(own.and_then(|own| own.medium)).or(state.attached.medium);
+        *material = Some(state.cover.unwrap_or_else(|| self.material(bsdf, emitter, medium)));
         leaf
     }
 
     /// The material of these entries of the source's tables.
-    fn material(&mut self, bsdf: Option<u32>, emitter: Option<u32>) -> MaterialId {
+    fn material(&mut self, bsdf: Option<u32>, emitter: Option<u32>, medium: Option<u32>) -> MaterialId {
         MaterialId(self.materials.intern(Material {
             bsdf: bsdf.map(|bsdf| self.bsdf[bsdf as usize]),
             emitter: emitter.map(|emitter| self.emitter[emitter as usize]),
+            medium: medium.map(|medium| self.medium[medium as usize]),
+            inside: None,
         }))
     }
 

@@ -1,6 +1,7 @@
 //! Divides the scene's union into objects: the opaque ones stay one union, each transmissive one stands alone.
 //!
-//! An object is an operand of the root union. It is transmissive when a leaf of it has a dielectric bsdf. A
+//! An object is an operand of the root union. It is transmissive when a leaf of it lets light in: it has a dielectric or
+//! inert bsdf, or a medium and no bsdf. A
 //! regularised union of two different media has no wall between them, so light could not tell where one ends;
 //! the scene means its objects to be side by side. Among opaque objects the walls inside of the union can be seen
 //! only by a camera that sits inside, so they stay one union, with the precedence of operands for coincident faces.
@@ -9,7 +10,7 @@
 //! Rewrites: `separate_transmissive`, `root_to_group`.
 
 use arsc_diagnostics::Span;
-use arsc_ir::{Bsdf, Ir, Leaf, Node, NodeId, NodeKind};
+use arsc_ir::{Bsdf, Ir, Leaf, Material, Node, NodeId, NodeKind};
 
 use crate::pipeline::Log;
 
@@ -42,15 +43,19 @@ fn separate(ir: &mut Ir, objects: Vec<NodeId>, origin: Span, log: &mut Log) -> V
     members
 }
 
+/// Light gets into a solid of this material.
+pub(crate) fn is_transmissive(ir: &Ir, material: &Material) -> bool {
+    let bsdf = material.bsdf.map(|bsdf| &ir.bsdfs[bsdf as usize]);
+    bsdf.map_or(material.medium.is_some(), Bsdf::is_transmissive)
+}
+
 /// For each node, whether light passes through a leaf below it.
 pub(crate) fn transmissive(ir: &Ir) -> Vec<bool> {
     let mut transmissive = vec![false; ir.nodes.len()];
     for (id, node) in ir.nodes.iter().enumerate() {
         transmissive[id] = match &node.kind {
             NodeKind::Leaf(leaf) => matches!(**leaf, Leaf::Solid { material: Some(material), .. }
-            if ir.materials[material.0 as usize].bsdf.is_some_and(|bsdf| {
-                matches!(ir.bsdfs[bsdf as usize], Bsdf::Dielectric { .. })
-            })),
+                if is_transmissive(ir, &ir.materials[material.0 as usize])),
             kind => kind.children().iter().any(|child| transmissive[child.index()]),
         };
     }

@@ -8,7 +8,10 @@ fn scene(statements: &str) -> Ir {
     let mut text = String::from(
         "ir 1\nbsdf b0 = lambert(reflectance: constant(0.5))\nbsdf b1 = mirror(reflectance: constant(0.9))\n\
          bsdf b2 = dielectric(ior: constant(1.5))\n\
-         emitter e0 = emitter(radiance: constant(1.0), two_sided: false)\n",
+         bsdf b3 = dielectric(ior: constant(1.33))\n\
+         emitter e0 = emitter(radiance: constant(1.0), two_sided: false)\n\
+         medium v0 = medium(absorption: constant(1.0), scattering: constant(0.0), emission: constant(0.0), \
+         phase: isotropic(), density: uniform())\n",
     );
     for (line, statement) in statements.lines().map(str::trim).filter(|line| !line.is_empty()).enumerate() {
         let origin = if statement.starts_with('%') { format!(" @0:{line}..{}", line + 1) } else { String::new() };
@@ -119,6 +122,35 @@ const CASES: &[Case] = &[
         1,
         "%0 = sphere(radius: 1.0)\n%1 = plane()\n%2 = union(%0, %1)\nroot %2",
         "%0 = sphere(radius: 1.0)\n%1 = half_space()\n%2 = union(%0, %1)\nroot %2",
+    ),
+    // (glass | water | water) - ball: glass, and the two waters as one solid.
+    Case(
+        "fill_interiors",
+        "split_interiors",
+        2,
+        "%0 = sphere(radius: 1.0)\n%1 = with(%0, bsdf: b2)\n%2 = with(%0, bsdf: b3)\n\
+         %3 = transform(%2, at: [1.0, 0.0, 0.0])\n%4 = transform(%2, at: [2.0, 0.0, 0.0])\n%5 = union(%1, %3, %4)\n\
+         %6 = difference(%5, %0)\n%7 = union(%6)\nroot %7",
+        "%0 = sphere(radius: 1.0)\n%1 = with(%0, bsdf: b2)\n%2 = with(%0, bsdf: b2)\n\
+         %3 = transform(%2, at: [1.0, 0.0, 0.0])\n%4 = union(%1, %3)\n%5 = difference(%4, %0)\n%6 = union(%5)\nroot %6",
+    ),
+    // The wall that water cuts into glass has glass behind it.
+    Case(
+        "fill_interiors",
+        "fill",
+        1,
+        "%0 = sphere(radius: 1.0)\n%1 = with(%0, bsdf: b2)\n%2 = sphere(radius: 1.0, at: [1.0, 0.0, 0.0])\n\
+         %3 = with(%2, bsdf: b3)\n%4 = difference(%1, %3)\n%5 = union(%4)\nroot %5",
+        "%0 = sphere(radius: 1.0)\n%1 = with(%0, bsdf: b2)\n%2 = sphere(radius: 1.0, at: [1.0, 0.0, 0.0])\n\
+         %3 = with(%2, bsdf: b2)\n%4 = difference(%1, %3)\n%5 = union(%4)\nroot %5",
+    ),
+    // A medium without a bsdf is inert.
+    Case(
+        "fill_interiors",
+        "fill",
+        1,
+        "%0 = sphere(radius: 1.0)\n%1 = with(%0, medium: v0)\n%2 = union(%1)\nroot %2",
+        "%0 = sphere(radius: 1.0)\n%1 = with(%0, bsdf: b2, medium: v0)\n%2 = union(%1)\nroot %2",
     ),
     Case(
         "share_subtrees",

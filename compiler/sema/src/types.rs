@@ -17,6 +17,8 @@ pub enum SpectrumKind {
     RefractiveIndex,
     /// Imaginary part of the index of refraction.
     Extinction,
+    /// Absorption or scattering per metre.
+    Coefficient,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +44,8 @@ pub enum Type {
     /// `cut_with(…)`, `inherit()` as attributes.
     Attributes,
     Medium,
+    PhaseFunction,
+    Density,
     Texture,
     /// Closed geometry.
     Solid,
@@ -98,7 +102,7 @@ pub enum Class {
     UnionOperand,
     /// Solids and lists of these.
     SolidOperand,
-    /// Bsdfs, emitters, bundles, and lists of these.
+    /// Bsdfs, emitters, media, bundles, and lists of these.
     Attribute,
 }
 
@@ -128,7 +132,7 @@ impl Class {
             Class::Geometry => matches!(ty, Solid | Surface | Shape),
             Class::UnionOperand => matches!(ty, Solid | Light | Environment),
             Class::SolidOperand => matches!(ty, Solid),
-            Class::Attribute => matches!(ty, Bsdf | Emitter | Attributes),
+            Class::Attribute => matches!(ty, Bsdf | Emitter | Medium | Attributes),
         }
     }
 
@@ -144,7 +148,7 @@ impl Class {
             Class::Geometry => "a solid, a surface or a list of these",
             Class::UnionOperand => "solids, lights or lists of these",
             Class::SolidOperand => "solids or lists of solids",
-            Class::Attribute => "a bsdf, an emitter or a list of these",
+            Class::Attribute => "a bsdf, an emitter, a medium or a list of these",
         }
     }
 }
@@ -167,10 +171,13 @@ pub const NAMED: &[(&str, Type)] = &[
     ("emission", Type::Spectrum(SpectrumKind::Emission)),
     ("refractive_index", Type::Spectrum(SpectrumKind::RefractiveIndex)),
     ("extinction", Type::Spectrum(SpectrumKind::Extinction)),
+    ("coefficient", Type::Spectrum(SpectrumKind::Coefficient)),
     ("bsdf", Type::Bsdf),
     ("emitter", Type::Emitter),
     ("attributes", Type::Attributes),
     ("medium", Type::Medium),
+    ("phase_function", Type::PhaseFunction),
+    ("density", Type::Density),
     ("texture", Type::Texture),
     ("solid", Type::Solid),
     ("surface", Type::Surface),

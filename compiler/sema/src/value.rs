@@ -7,7 +7,9 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use arsc_ir::{Action, ActionAt, Attributes, Camera, Exposure, Filter, NodeId, Spectrum, Strategy};
+use arsc_ir::{
+    Action, ActionAt, Attributes, Camera, Density, Exposure, Filter, NodeId, PhaseFunction, Spectrum, Strategy,
+};
 
 use crate::code::{Coercion, FnId};
 use crate::registry::BuiltinId;
@@ -33,6 +35,8 @@ pub enum Value {
     /// A shape, light or environment.
     Node(NodeId),
     Attributes(Attributes),
+    PhaseFunction(PhaseFunction),
+    Density(Arc<Density>),
     Camera(Arc<Camera>),
     Filter(Arc<Filter>),
     Action(Arc<ActionAt>),
@@ -173,6 +177,20 @@ impl Value {
         match self {
             Value::Attributes(attributes) => *attributes,
             other => bug("attributes", other),
+        }
+    }
+
+    pub fn as_phase_function(&self) -> PhaseFunction {
+        match self {
+            Value::PhaseFunction(phase) => *phase,
+            other => bug("a phase function", other),
+        }
+    }
+
+    pub fn as_density(&self) -> &Arc<Density> {
+        match self {
+            Value::Density(density) => density,
+            other => bug("a density", other),
         }
     }
 

@@ -316,3 +316,30 @@ fn text_lints() {
     expect("scene { }", &[("W0112", "scene { }")]);
     expect("fn f() -> int { 1; 2 }", &[("W0105", "1")]);
 }
+
+#[test]
+fn media_are_possible_matter() {
+    for (bad, code, label) in [
+        ("medium(water_absorption * -1)", "E0201", "*"),
+        ("medium(absorption_colour(0))", "E0201", "0"),
+        ("medium(phase: henyey_greenstein(1))", "E0201", "1"),
+        ("medium(phase: rayleigh(0.6))", "E0201", "0.6"),
+        ("mist(1, gaussian_density(sigma: 0))", "E0201", "0"),
+    ] {
+        let script = format!("from_std!scene {{ sphere() |> with({bad}) }}");
+        let imports: Vec<&str> = [
+            "medium",
+            "water_absorption",
+            "absorption_colour",
+            "henyey_greenstein",
+            "rayleigh",
+            "mist",
+            "gaussian_density",
+        ]
+        .into_iter()
+        .filter(|name| bad.contains(&format!("{name}(")) || bad.contains(&format!("{name} ")))
+        .collect();
+        let script = script.replace("from_std!", &format!("import std.medium {{ {} }}\n", imports.join(", ")));
+        expect(&script, &[(code, label)]);
+    }
+}

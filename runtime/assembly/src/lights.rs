@@ -18,6 +18,7 @@ pub fn lower(ir: &Ir) -> Result<(Vec<Light>, Vec<Environment>), AssemblyError> {
         };
         match kind {
             NodeKind::Light(light) => lights.push(lower_light(light, &world_from_local)),
+            NodeKind::Environment(environment) if matches!(**environment, arsc_ir::Environment::Medium { .. }) => {}
             NodeKind::Environment(environment) => {
                 environments.push(lower_environment(environment, &world_from_local)?);
             }
@@ -57,6 +58,7 @@ fn lower_environment(
     world_from_local: &DAffine3,
 ) -> Result<Environment, AssemblyError> {
     match environment {
+        arsc_ir::Environment::Medium { .. } => Err(AssemblyError::NotNormal("a medium is no light")),
         arsc_ir::Environment::Constant { radiance } => Ok(Environment::constant(radiance)),
         arsc_ir::Environment::HosekWilkie { turbidity, ground_albedo, sun, solar_disc, scale } => {
             // The model is symmetric about the vertical plane through the sun, so that turning and mirroring it about

@@ -9,7 +9,7 @@ use crate::AssemblyError;
 pub fn lower(ir: &Ir) -> Result<Vec<Material>, AssemblyError> {
     let lower_one = |material: &arsc_ir::Material| {
         let bsdf = match material.bsdf {
-            Some(index) => lower_bsdf(entry(&ir.bsdfs, index)?),
+            Some(index) => lower_bsdf(entry(&ir.bsdfs, index)?)?,
             None => Bsdf::default(),
         };
         let emitter = match material.emitter {
@@ -28,12 +28,13 @@ fn entry<T>(table: &[T], index: u32) -> Result<&T, AssemblyError> {
     table.get(index as usize).ok_or(AssemblyError::NotNormal("an attribute is out of range"))
 }
 
-fn lower_bsdf(bsdf: &arsc_ir::Bsdf) -> Bsdf {
-    match bsdf {
+fn lower_bsdf(bsdf: &arsc_ir::Bsdf) -> Result<Bsdf, AssemblyError> {
+    Ok(match bsdf {
         arsc_ir::Bsdf::Lambert { reflectance } => Bsdf::lambert(reflectance),
         arsc_ir::Bsdf::OrenNayar { reflectance, sigma } => Bsdf::oren_nayar(reflectance, *sigma),
         arsc_ir::Bsdf::Mirror { reflectance } => Bsdf::mirror(reflectance),
         arsc_ir::Bsdf::Dielectric { ior } => Bsdf::dielectric(ior),
         arsc_ir::Bsdf::Conductor { eta, k } => Bsdf::conductor(eta, k),
-    }
+        arsc_ir::Bsdf::Inert => return Err(AssemblyError::Settings("media are not rendered yet".into())),
+    })
 }

@@ -1,8 +1,9 @@
-//! Transmissive solids that overlap: which of them a point belongs to is not said.
+//! Transmissive objects that overlap: the earlier one fills the common part, which may not be what was meant. A union
+//! `a | b` says it: `a` comes first.
 
 use arsc_diagnostics::{Diagnostic, codes::geometry as codes};
 use arsc_geometry::{Aabb, DVec3};
-use arsc_ir::{Leaf, NodeId, NodeKind};
+use arsc_ir::NodeId;
 
 use super::sampling::roberts;
 use super::survey::{Membership, Survey};
@@ -25,21 +26,7 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
         .filter(|id| survey.transmissive[id.index()])
         .collect();
     let mut lint = Lint { survey, membership: Membership::new(survey), found: 0, findings };
-    lint.overlaps(&independent, &|id: &NodeId| Some(id.0));
-    for node in &survey.ir.nodes {
-        if let NodeKind::Union(of) = &node.kind {
-            let bsdf = |id: &NodeId| match survey.ir.kind(*id) {
-                NodeKind::Leaf(leaf) if matches!(**leaf, Leaf::Solid { .. }) => {
-                    survey.material(leaf).filter(|material| survey.is_dielectric(material)).and_then(|m| m.bsdf)
-                }
-                _ => None,
-            };
-            let media: Vec<NodeId> = of.iter().copied().filter(|id| bsdf(id).is_some()).collect();
-            if media.windows(2).any(|pair| bsdf(&pair[0]) != bsdf(&pair[1])) {
-                lint.overlaps(&media, &bsdf);
-            }
-        }
-    }
+    lint.overlaps(&independent);
 }
 
 struct Lint<'a> {
@@ -50,8 +37,8 @@ struct Lint<'a> {
 }
 
 impl Lint<'_> {
-    /// Pairs of solids with a common point, unless both are of one class.
-    fn overlaps(&mut self, solids: &[NodeId], class: &dyn Fn(&NodeId) -> Option<u32>) {
+    /// Pairs of solids with a common point.
+    fn overlaps(&mut self, solids: &[NodeId]) {
         let boxes: Vec<Aabb> = solids.iter().map(|id| self.survey.bounds[id.index()]).collect();
         let tree = BoxTree::new(&boxes);
         let mut work = Work::for_searches(solids.len());
@@ -59,7 +46,7 @@ impl Lint<'_> {
             let mut pairs = PAIRS;
             tree.overlapping(&boxes[i], &mut work, |j| {
                 pairs -= 1;
-                if j < i && class(id) != class(&solids[j]) && self.common_point(*id, solids[j]).is_some() {
+                if j < i && self.common_point(*id, solids[j]).is_some() {
                     self.findings.push(report(self.survey, solids[j], *id));
                     self.found += 1;
                 }
@@ -87,6 +74,6 @@ impl Lint<'_> {
 fn report(survey: &Survey, first: NodeId, second: NodeId) -> Diagnostic {
     Diagnostic::new(codes::OVERLAPPING_DIELECTRICS, "two transmissive solids overlap")
         .label(survey.origin(second), "shares points with the other")
-        .label(survey.origin(first), "which medium fills them is not said")
-        .help("subtract one from the other, or leave a gap between them")
+        .label(survey.origin(first), "this one comes first and fills what they share")
+        .help("join them as `a | b` to say that `a` fills what they share, or leave a gap between them")
 }

@@ -2,7 +2,7 @@
 
 use arsc_diagnostics::Span;
 use arsc_geometry::{Aabb, DAffine3, DVec3};
-use arsc_ir::{Bsdf, Ir, Leaf, Material, NodeId, NodeKind};
+use arsc_ir::{Ir, Leaf, Material, NodeId, NodeKind};
 
 use crate::bound_unbounded::contexts;
 use crate::bounds::{bounds, place};
@@ -73,10 +73,6 @@ impl<'a> Survey<'a> {
             NodeKind::Leaf(leaf) => self.material(leaf).is_some_and(|material| material.emitter.is_some()),
             _ => false,
         }
-    }
-
-    pub fn is_dielectric(&self, material: &Material) -> bool {
-        material.bsdf.is_some_and(|bsdf| matches!(self.ir.bsdfs[bsdf as usize], Bsdf::Dielectric { .. }))
     }
 
     /// The solid leaves below a node, in order; `None` if more than `limit`.

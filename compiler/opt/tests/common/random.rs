@@ -152,7 +152,7 @@ impl Scene {
             _ => None,
         };
         let bsdf = self.rng.random_bool(0.5).then(|| self.rng.random_range(0..5));
-        let node = self.cover(node, Attributes { bsdf, emitter: None, cut }, 0.2);
+        let node = self.cover(node, Attributes { bsdf, cut, ..Attributes::default() }, 0.2);
         let node = if self.rng.random_bool(0.3) {
             let map = self.map();
             self.b.transform(map, node, self.at)

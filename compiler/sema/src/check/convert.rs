@@ -154,7 +154,7 @@ impl Checker<'_> {
             }
             (Direction, Vec3) => Some(Conversion::Same),
             (from, Shape) if from.is_shape() => Some(Conversion::Same),
-            (Bsdf | Emitter, Attributes) => Some(Conversion::Same),
+            (Bsdf | Emitter | Medium, Attributes) => Some(Conversion::Same),
             (List(from), List(to)) => Some(match self.convert(from, to)? {
                 Conversion::Same => Conversion::Same,
                 Conversion::By(element) => Conversion::By(Coercion::List(Box::new(element))),
@@ -216,7 +216,7 @@ impl Checker<'_> {
         if a.is_shape() && b.is_shape() {
             return Some(Type::Shape);
         }
-        let attribute = |ty: &Type| matches!(ty, Type::Bsdf | Type::Emitter | Type::Attributes);
+        let attribute = |ty: &Type| matches!(ty, Type::Bsdf | Type::Emitter | Type::Medium | Type::Attributes);
         (attribute(&a) && attribute(&b)).then_some(Type::Attributes)
     }
 
@@ -310,11 +310,11 @@ fn advice(found: &Type, wanted: &Type) -> Option<String> {
         (Tuple(_) | Vec3 | Point, Direction) => "`direction(x, y, z)` and `normalize(v)` give directions",
         (Point, Vec3) => "the vector from the origin is `p - point(0, 0, 0)`",
         (Vec3 | Direction, Point) => "the point at the end of a vector is `point(0, 0, 0) + v`",
-        (Bsdf | Emitter | Attributes, ty) if ty.is_shape() => "attach it to a shape: `shape |> with(…)`",
+        (Bsdf | Emitter | Medium | Attributes, ty) if ty.is_shape() => "attach it to a shape: `shape |> with(…)`",
         (Spectrum(_), Bsdf) => "make a bsdf of it: `lambert(…)` from std.material",
         (Spectrum(_), Emitter) => "make an emitter of it: `emitter(…)`",
         (Spectrum(_), Spectrum(_)) => {
-            "kinds of spectra do not mix: reflectance, emission, refractive index, extinction"
+            "kinds of spectra do not mix: reflectance, emission, refractive index, extinction, coefficient"
         }
         (Fn(_), Fn(_)) => return None,
         (Fn(_), _) => "call it: `f(…)`",

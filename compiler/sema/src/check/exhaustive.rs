@@ -128,7 +128,8 @@ fn useful_tuple(
 fn expand(row: &[Pat], width: usize, out: &mut Vec<Vec<Pat>>) {
     let with = |parts: &[Pat]| parts.iter().chain(&row[1..]).cloned().collect();
     match &row[0] {
-        Pat::Tuple(parts) => out.push(with(parts)),
+        // One of another width was wrong and has been reported; it counts as any.
+        Pat::Tuple(parts) if parts.len() == width => out.push(with(parts)),
         Pat::Either(alternatives) => {
             for alternative in alternatives {
                 let row: Vec<Pat> = std::iter::once(alternative.clone()).chain(row[1..].iter().cloned()).collect();

@@ -41,6 +41,7 @@ impl Machine<'_> {
             root,
             bsdfs: std::mem::take(&mut self.bsdfs),
             emitters: std::mem::take(&mut self.emitters),
+            media: std::mem::take(&mut self.media),
             materials: Vec::new(),
             camera: camera.map(|camera| camera.as_camera().as_ref().clone()),
             actions,
@@ -50,7 +51,8 @@ impl Machine<'_> {
     /// Evaluates the values of the root script that nothing has asked for: `let x = 1 / 0` is wrong although unused.
     /// What they add to the scene's tables is dropped.
     fn unused_values(&mut self, root: SourceId) -> Eval<()> {
-        let (nodes, bsdfs, emitters) = (self.nodes.len(), self.bsdfs.len(), self.emitters.len());
+        let (nodes, bsdfs) = (self.nodes.len(), self.bsdfs.len());
+        let (emitters, media) = (self.emitters.len(), self.media.len());
         for (i, global) in self.program.globals.iter().enumerate() {
             if global.entry.span.source == root {
                 self.global(GlobalId(i as u32), global.entry.span)?;
@@ -59,6 +61,7 @@ impl Machine<'_> {
         self.nodes.truncate(nodes);
         self.bsdfs.truncate(bsdfs);
         self.emitters.truncate(emitters);
+        self.media.truncate(media);
         Ok(())
     }
 

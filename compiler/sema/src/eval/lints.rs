@@ -88,6 +88,16 @@ impl Machine<'_> {
         Err(site.fail_arg(arg, codes::OUT_OF_RANGE, message, "not positive everywhere"))
     }
 
+    /// A spectrum that must not be negative anywhere.
+    pub fn require_non_negative(&mut self, value: &Value, what: &str, site: &Site, arg: usize) -> Eval<()> {
+        let (lowest, _) = extremes(value.as_spectrum());
+        if lowest >= 0.0 {
+            return Ok(());
+        }
+        let message = format!("{what} must not be negative from 360nm to 830nm");
+        Err(site.fail_arg(arg, codes::OUT_OF_RANGE, message, "negative somewhere"))
+    }
+
     /// Reports once per place; in std modules at the user's call.
     pub(crate) fn lint(&mut self, mut diagnostic: Diagnostic) {
         if let (Some(caller), Some(label)) = (self.std_caller, diagnostic.labels.first_mut()) {

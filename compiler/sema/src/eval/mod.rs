@@ -20,7 +20,7 @@ use rustc_hash::FxHashMap;
 use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Code as DiagnosticCode, Diagnostic, SourceId, Span};
 use arsc_geometry::DAffine3;
-use arsc_ir::{Bsdf, Emitter, Leaf, Node, NodeId, NodeKind, Shape, Surface};
+use arsc_ir::{Bsdf, Emitter, Leaf, Medium, Node, NodeId, NodeKind, Shape, Surface};
 
 use crate::code::{GlobalId, Program, Site};
 use crate::meshes::ClosedOutcome;
@@ -86,6 +86,7 @@ pub struct Machine<'a> {
     pub nodes: Vec<Node>,
     pub bsdfs: Vec<Bsdf>,
     pub emitters: Vec<Emitter>,
+    pub media: Vec<Medium>,
     /// Lints found on the way.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -113,6 +114,7 @@ impl<'a> Machine<'a> {
             nodes: Vec::new(),
             bsdfs: Vec::new(),
             emitters: Vec::new(),
+            media: Vec::new(),
             diagnostics: Vec::new(),
         }
     }
@@ -167,6 +169,10 @@ impl<'a> Machine<'a> {
 
     pub fn emitter(&mut self, emitter: Emitter) -> u32 {
         intern(&mut self.emitters, emitter)
+    }
+
+    pub fn medium(&mut self, medium: Medium) -> u32 {
+        intern(&mut self.media, medium)
     }
 }
 

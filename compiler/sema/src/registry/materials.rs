@@ -1,7 +1,7 @@
 //! Attributes: what covers a surface, and attaching it.
 
 use arsc_diagnostics::codes::sema as codes;
-use arsc_ir::{Attributes, Bsdf, CutRule, Emitter, NodeKind, Precedence};
+use arsc_ir::{Attributes, Bsdf, CutRule, Emitter, Leaf, NodeId, NodeKind, Precedence};
 
 use super::{Builtin, Param};
 use crate::code::Site;
@@ -25,10 +25,14 @@ fn attaching() -> Vec<Builtin> {
         Builtin::new(name, doc)
             .var(Class::Geometry)
             .param(Param::new("shape", Var(0), "what it applies to, with all its parts"))
-            .variadic(Param::new("attributes", Type::AnyOf(Class::Attribute), "bsdfs, emitters, or lists of them"))
+            .variadic(Param::new(
+                "attributes",
+                Type::AnyOf(Class::Attribute),
+                "bsdfs, emitters, media, or lists of them",
+            ))
     };
     vec![
-        on("with", "Attaches a bsdf, an emitter or both. Where parts have their own, the innermost wins.")
+        on("with", "Attaches a bsdf, an emitter, a medium, or several of these. Where parts have their own, the innermost wins.")
             .runs(Var(0), |m, args, site| attach(m, args, Precedence::Inner, site)),
         on("override", "Attaches from outside: wins over everything that the parts have.")
             .runs(Var(0), |m, args, site| attach(m, args, Precedence::Outer, site)),
@@ -76,18 +80,22 @@ fn merge(m: &mut Machine<'_>, value: &Value, bundle: &mut Attributes, site: &Sit
     let new = value.as_attributes();
     let twice = |what| {
         Box::new(
-            site.fail(codes::CONFLICTING_ATTRIBUTES, format!("two {what}s are attached at once"))
+            site.fail(codes::CONFLICTING_ATTRIBUTES, format!("two {what} are attached at once"))
                 .help("attach one; `override` replaces what parts already have"),
         )
     };
     if new.bsdf.is_some() && bundle.bsdf.is_some() {
-        return Err(twice("bsdf"));
+        return Err(twice("bsdfs"));
     }
     if new.emitter.is_some() && bundle.emitter.is_some() {
-        return Err(twice("emitter"));
+        return Err(twice("emitters"));
+    }
+    if new.medium.is_some() && bundle.medium.is_some() {
+        return Err(twice("media"));
     }
     bundle.bsdf = bundle.bsdf.or(new.bsdf);
     bundle.emitter = bundle.emitter.or(new.emitter);
+    bundle.medium = bundle.medium.or(new.medium);
     bundle.cut = bundle.cut.or(new.cut);
     Ok(())
 }
@@ -98,8 +106,23 @@ fn apply(m: &mut Machine<'_>, value: &Value, attributes: Attributes, precedence:
         let covered: Eval<Vec<Value>> = list.iter().map(|x| apply(m, x, attributes, precedence, site)).collect();
         return covered.map(Value::list);
     }
+    if attributes.medium.is_some() && is_surface(m, value.as_node()) {
+        let failure = site.fail(codes::NOT_A_SOLID, "a medium fills solids, but this surface has no inside");
+        return Err(Box::new(failure.help("use a closed solid, such as `box(…)` or `half_space()`")));
+    }
     let kind = NodeKind::Attributes { attributes, precedence, child: value.as_node() };
     m.node(kind, site.span).map(Value::Node)
+}
+
+/// An open surface, placed and covered or not.
+fn is_surface(m: &Machine<'_>, mut node: NodeId) -> bool {
+    loop {
+        match &m.nodes[node.index()].kind {
+            NodeKind::Transform { child, .. } | NodeKind::Attributes { child, .. } => node = *child,
+            NodeKind::Leaf(leaf) => return matches!(**leaf, Leaf::Surface { .. }),
+            _ => return false,
+        }
+    }
 }
 
 fn bsdf(m: &mut Machine<'_>, bsdf: Bsdf) -> Eval {
@@ -148,6 +171,8 @@ fn bsdfs() -> Vec<Builtin> {
                 let (eta, k) = (args[0].as_spectrum().as_ref().clone(), args[1].as_spectrum().as_ref().clone());
                 bsdf(m, Bsdf::Conductor { eta, k })
             }),
+        of("inert", "No interface: light passes straight on. Solids with a medium and without a bsdf have it.")
+            .runs(Type::Bsdf, |m, _, _| bsdf(m, Bsdf::Inert)),
     ]
 }
 
@@ -171,10 +196,6 @@ fn not_yet() -> Vec<Builtin> {
         of("phosphor", "A fluorescent surface.")
             .param(Param::new("reflectance", Spectrum(Reflectance), "without re-radiation"))
             .later(Type::Bsdf, "fluorescence"),
-        of("medium", "A homogeneous participating medium inside a solid.")
-            .param(Param::new("sigma_a", Spectrum(Extinction), "absorption, 1/m"))
-            .param(Param::new("sigma_s", Spectrum(Extinction), "scattering, 1/m"))
-            .later(Type::Medium, "the participating medium"),
         of("image_texture", "A texture from an image file.")
             .param(Param::new("path", Type::Str, "image file, relative to the script"))
             .later(Type::Texture, "the texture"),

@@ -10,6 +10,7 @@ mod lights;
 mod lists;
 mod materials;
 mod math;
+mod media;
 mod outlines;
 mod param;
 mod solids;
@@ -145,12 +146,13 @@ impl Registry {
     }
 
     fn build() -> Registry {
-        let families: [(&'static str, Family); 13] = [
+        let families: [(&'static str, Family); 14] = [
             ("Solids", solids::builtins),
             ("Surfaces", surfaces::builtins),
             ("Boolean operations", csg::builtins),
             ("Transforms", transforms::builtins),
             ("Attributes and materials", materials::builtins),
+            ("Participating media", media::builtins),
             ("Spectra", spectra::builtins),
             ("Lights and environments", lights::builtins),
             ("Cameras", cameras::builtins),
@@ -184,6 +186,7 @@ impl Registry {
     pub fn find_prelude_of(&self, module: &str, name: &str) -> Option<BuiltinId> {
         let family = match module {
             "std.material" => "Attributes and materials",
+            "std.medium" => "Participating media",
             "std.spectra" => "Spectra",
             "std.light" => "Lights and environments",
             "std.solid" => "Solids",

@@ -8,7 +8,7 @@ use arsc_ir::Spectrum;
 use super::{Builtin, Param};
 use crate::code::Site;
 use crate::eval::{Eval, Machine};
-use crate::types::SpectrumKind::{self, Emission, Extinction, Reflectance, RefractiveIndex};
+use crate::types::SpectrumKind::{self, Coefficient, Emission, Extinction, Reflectance, RefractiveIndex};
 use crate::types::Type::{self, Float, Str, Temperature, Wavelength};
 use crate::value::Value;
 
@@ -104,6 +104,8 @@ fn tables() -> Vec<Builtin> {
             .runs(kind(RefractiveIndex), |m, args, site| from_table(m, args, site, RefractiveIndex)),
         from_file("tabulated_extinction", "An extinction from a table, linear between its rows.")
             .runs(kind(Extinction), |m, args, site| from_table(m, args, site, Extinction)),
+        from_file("tabulated_coefficient", "A coefficient of a medium from a table, linear between its rows.")
+            .runs(kind(Coefficient), |m, args, site| from_table(m, args, site, Coefficient)),
         samples("reflectance", "A reflectance from pairs such as `(550nm, 0.4)`, linear between them.")
             .runs(kind(Reflectance), |m, args, site| from_samples(m, args, site, Reflectance)),
         samples("emission", "An emission from pairs such as `(550nm, 0.4)`, linear between them.")
@@ -112,6 +114,8 @@ fn tables() -> Vec<Builtin> {
             .runs(kind(RefractiveIndex), |m, args, site| from_samples(m, args, site, RefractiveIndex)),
         samples("extinction", "An extinction from pairs such as `(550nm, 2.1)`, linear between them.")
             .runs(kind(Extinction), |m, args, site| from_samples(m, args, site, Extinction)),
+        samples("coefficient", "Absorption or scattering per metre from pairs such as `(550nm, 0.1)`.")
+            .runs(kind(Coefficient), |m, args, site| from_samples(m, args, site, Coefficient)),
     ]
 }
 
