@@ -3,7 +3,7 @@
 use std::fmt::{self, Formatter};
 use std::sync::Arc;
 
-use arsc_geometry::{DVec2, DVec3, Hyperboloid, Paraboloid, Polygon, Polyhedron, Prism, Shape, Superquadric};
+use arsc_geometry::{DVec2, DVec3, Hyperboloid, Lathe, Paraboloid, Polygon, Polyhedron, Prism, Shape, Superquadric};
 
 use crate::args::{Args, float_list};
 use crate::print::Quoted;
@@ -38,6 +38,10 @@ pub(crate) fn open_shape<'a, 'b>(f: &'a mut Formatter<'b>, shape: &Shape) -> Res
             let call = Call::new(f, "prism")?.float("height", prism.height())?;
             prism.polygon().rings().iter().try_fold(call, |call, ring| call.value(Floats(&flat2(ring))))
         }
+        Shape::Lathe(ref lathe) => Call::new(f, "lathe")?
+            .value(Floats(&flat2(lathe.points())))?
+            .arg("closed", lathe.is_closed())?
+            .arg("smooth", lathe.is_smooth()),
         Shape::Superquadric(ref superquadric) => {
             let [e1, e2] = superquadric.exponents();
             Call::new(f, "superquadric")?.float("e1", e1)?.float("e2", e2)
@@ -51,6 +55,13 @@ pub(crate) fn open_shape<'a, 'b>(f: &'a mut Formatter<'b>, shape: &Shape) -> Res
 
 fn flat2(points: &[DVec2]) -> Vec<f64> {
     points.iter().flat_map(DVec2::to_array).collect()
+}
+
+fn lathe(args: &mut Args) -> Result<Shape, Fault> {
+    let list = args.next()?;
+    let points = tuples::<2>(&list)?.into_iter().map(DVec2::from_array).collect();
+    let solid = Lathe::new(points, args.boolean("closed")?, args.boolean("smooth")?);
+    Ok(Shape::Lathe(Arc::new(solid.map_err(|error| (list.offset, error.to_string()))?)))
 }
 
 fn polyhedron(args: &mut Args) -> Result<Shape, Fault> {
@@ -105,6 +116,7 @@ pub(crate) fn shape(args: &mut Args) -> Result<Option<Shape>, Fault> {
             two_sheets: args.boolean("two_sheets")?,
         }),
         "prism" => prism(args)?,
+        "lathe" => lathe(args)?,
         "polyhedron" => polyhedron(args)?,
         "superquadric" => {
             let solid = Superquadric::new(args.float("e1")?, args.float("e2")?);
@@ -149,6 +161,10 @@ pub(crate) mod tests {
                 let mut rings = vec![rectangle(width, depth)];
                 rings.extend(holed.then(|| rectangle(0.3 * width, 0.5 * depth)));
                 Shape::Prism(Arc::new(Prism::new(Polygon::new(rings).unwrap(), height).unwrap()))
+            }),
+            (size(), size(), any::<bool>(), any::<bool>()).prop_map(|(radius, height, closed, smooth)| {
+                let points = [(radius, 0.0), (2.0 * radius, 0.5 * height), (radius, height)].map(DVec2::from);
+                Shape::Lathe(Arc::new(Lathe::new(points.to_vec(), closed, smooth).unwrap()))
             }),
             (0.05..10f64, 0.05..10f64)
                 .prop_map(|(e1, e2)| Shape::Superquadric(Arc::new(Superquadric::new(e1, e2).unwrap()))),

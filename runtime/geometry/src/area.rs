@@ -23,6 +23,7 @@ impl Shape {
         match self {
             Shape::Sphere { .. } | Shape::Torus { .. } | Shape::HalfSpace | Shape::InfiniteCylinder { .. } => 1,
             Shape::Superquadric(_) => 1,
+            Shape::Lathe(lathe) => lathe.areas().len() as u32,
             Shape::Box { .. } => 6,
             Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::Paraboloid(_) | Shape::Hyperboloid(_) => 3,
             Shape::Mesh(mesh) => mesh.mesh().triangles.len() as u32,
@@ -46,6 +47,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => 0.5 * mesh.mesh().cross(face).length(),
             Shape::Polyhedron(ref polyhedron) => polyhedron.areas().area(face),
             Shape::Prism(ref prism) => prism.areas().area(face),
+            Shape::Lathe(ref lathe) => lathe.areas().area(face),
             Shape::Superquadric(ref superquadric) => superquadric.area(),
         }
     }
@@ -54,6 +56,7 @@ impl Shape {
     fn area_table(&self) -> Option<&AreaTable> {
         match self {
             Shape::Prism(prism) => Some(prism.areas()),
+            Shape::Lathe(lathe) => Some(lathe.areas()),
             Shape::Polyhedron(polyhedron) => Some(polyhedron.areas()),
             _ => None,
         }
@@ -100,6 +103,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => mesh.mesh().surface(face as usize, fold(u)).p,
             Shape::Polyhedron(ref polyhedron) => polyhedron.sample(face, u),
             Shape::Prism(ref prism) => prism.sample(face, u),
+            Shape::Lathe(ref lathe) => lathe.sample(face, u),
             Shape::Superquadric(ref superquadric) => superquadric.sample(u),
         })
     }

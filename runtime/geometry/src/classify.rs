@@ -38,6 +38,7 @@ impl Placed {
             Shape::Hyperboloid(hyperboloid) => return hyperboloid.classify(&region),
             Shape::Polyhedron(polyhedron) => return polyhedron.classify(&region),
             Shape::Prism(prism) => return prism.classify(&region),
+            Shape::Lathe(lathe) => return lathe.classify(&region),
             Shape::Superquadric(superquadric) => return superquadric.classify(&region),
             _ => {}
         }
@@ -107,6 +108,7 @@ impl Region {
             | Shape::Polyhedron(_)
             | Shape::Prism(_)
             | Shape::Superquadric(_)
+            | Shape::Lathe(_)
             | Shape::Mesh(_) => false,
         }
     }

@@ -252,6 +252,7 @@ fn extent_along(shape: &Shape, row: DVec3, inverse: &DAffine3, axis: usize) -> (
         Shape::Mesh(ref mesh) => mesh.extent_along(row),
         Shape::Polyhedron(ref polyhedron) => (-polyhedron.support(-row), polyhedron.support(row)),
         Shape::Superquadric(ref superquadric) => (-superquadric.support(-row), superquadric.support(row)),
+        Shape::Lathe(ref lathe) => (-lathe.support(-row), lathe.support(row)),
         Shape::Prism(ref prism) => (-prism.support(-row), prism.support(row)),
     }
 }

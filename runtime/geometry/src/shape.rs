@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    Aabb, ClosedMesh, Crossings, Hyperboloid, Paraboloid, Polyhedron, Prism, Superquadric, cone, cuboid, half_space,
-    sphere, torus,
+    Aabb, ClosedMesh, Crossings, Hyperboloid, Lathe, Paraboloid, Polyhedron, Prism, Superquadric, cone, cuboid,
+    half_space, sphere, torus,
 };
 
 /// A closed solid in object space. Sizes are positive and finite; the compiler guarantees it.
@@ -46,6 +46,8 @@ pub enum Shape {
     HalfSpace,
     Paraboloid(Paraboloid),
     Hyperboloid(Hyperboloid),
+    /// A profile turned about the z axis.
+    Lathe(Arc<Lathe>),
     /// A superellipsoid with unit half axes.
     Superquadric(Arc<Superquadric>),
     /// What a closed triangle mesh bounds.
@@ -84,7 +86,7 @@ impl Shape {
             Shape::HalfSpace | Shape::Mesh(_) => true,
             Shape::Paraboloid(ref paraboloid) => paraboloid.is_valid(),
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.is_valid(),
-            Shape::Polyhedron(_) | Shape::Prism(_) | Shape::Superquadric(_) => true,
+            Shape::Polyhedron(_) | Shape::Prism(_) | Shape::Superquadric(_) | Shape::Lathe(_) => true,
         }
     }
 
@@ -105,6 +107,10 @@ impl Shape {
                 return polyhedron.points().iter().flat_map(DVec3::to_array).for_each(visit);
             }
             Shape::Superquadric(superquadric) => &superquadric.exponents(),
+            Shape::Lathe(lathe) => {
+                visit(f64::from(2 * u8::from(lathe.is_closed()) + u8::from(lathe.is_smooth())));
+                return lathe.points().iter().flat_map(DVec2::to_array).for_each(visit);
+            }
             Shape::Prism(prism) => {
                 visit(prism.height());
                 return prism.polygon().rings().iter().flatten().flat_map(DVec2::to_array).for_each(visit);
@@ -131,6 +137,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => mesh.contains(p),
             Shape::Polyhedron(ref polyhedron) => polyhedron.contains(p),
             Shape::Prism(ref prism) => prism.contains(p),
+            Shape::Lathe(ref lathe) => lathe.contains(p),
             Shape::Superquadric(ref superquadric) => superquadric.contains(p),
         }
     }
@@ -161,6 +168,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => *mesh.bounds(),
             Shape::Polyhedron(ref polyhedron) => polyhedron.bounds(),
             Shape::Prism(ref prism) => prism.bounds(),
+            Shape::Lathe(ref lathe) => lathe.bounds(),
             Shape::Superquadric(ref superquadric) => superquadric.bounds(),
         }
     }
@@ -184,6 +192,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => mesh.magnitude(),
             Shape::Polyhedron(ref polyhedron) => largest(&polyhedron.bounds()),
             Shape::Prism(ref prism) => largest(&prism.bounds()),
+            Shape::Lathe(ref lathe) => largest(&lathe.bounds()),
             Shape::Superquadric(_) => 1.0,
         }
     }
@@ -209,6 +218,7 @@ impl Shape {
             Shape::Mesh(ref mesh) => mesh.crossings(origin, dir),
             Shape::Polyhedron(ref polyhedron) => polyhedron.crossings(origin, dir),
             Shape::Prism(ref prism) => prism.crossings(origin, dir),
+            Shape::Lathe(ref lathe) => unit(dir, |d| lathe.crossings(origin, d)),
             Shape::Superquadric(ref superquadric) => unit(dir, |d| superquadric.crossings(origin, d)),
         }
     }
@@ -227,6 +237,7 @@ impl Shape {
             Shape::Hyperboloid(ref hyperboloid) => hyperboloid.surface(p, face),
             Shape::Polyhedron(ref polyhedron) => polyhedron.surface(p, face),
             Shape::Prism(ref prism) => prism.surface(p, face),
+            Shape::Lathe(ref lathe) => lathe.surface(p, face),
             Shape::Superquadric(ref superquadric) => superquadric.surface(p),
             Shape::Mesh(ref mesh) => mesh.surface(p, face),
         }

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use arsc_geometry::{
-    Aabb, Classification, DAffine3, DMat3, DVec2, DVec3, Hyperboloid, Paraboloid, Placed, Polygon, Polyhedron, Prism,
-    Shape, Superquadric,
+    Aabb, Classification, DAffine3, DMat3, DVec2, DVec3, Hyperboloid, Lathe, Paraboloid, Placed, Polygon, Polyhedron,
+    Prism, Shape, Superquadric,
 };
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -40,6 +40,11 @@ fn shapes() -> Vec<Shape> {
         superquadric(2.5, 1.0),
         superquadric(0.5, 3.0),
         superquadric(3.0, 3.0),
+        lathe(&[(0.0, -0.6), (0.5, -0.6), (0.2, 0.1), (0.7, 0.5), (0.0, 0.8)], false, false),
+        lathe(&[(0.3, -0.6), (0.6, -0.1), (0.4, 0.7)], false, false),
+        lathe(&[(0.4, -0.3), (0.9, -0.2), (0.8, 0.4), (0.5, 0.1)], true, false),
+        lathe(&[(0.0, -0.7), (0.6, -0.5), (0.25, 0.0), (0.5, 0.5), (0.0, 0.8)], false, true),
+        lathe(&[(0.4, -0.3), (0.9, -0.2), (0.8, 0.4), (0.5, 0.2)], true, true),
         plate(),
         star(7, 0.4),
         star(1000, 0.8),
@@ -54,6 +59,11 @@ fn hyperboloid(radius: f64, slope: f64, half_height: f64, two_sheets: bool) -> S
 
 fn superquadric(e1: f64, e2: f64) -> Shape {
     Shape::Superquadric(Arc::new(Superquadric::new(e1, e2).unwrap()))
+}
+
+fn lathe(points: &[(f64, f64)], closed: bool, smooth: bool) -> Shape {
+    let points = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
+    Shape::Lathe(Arc::new(Lathe::new(points, closed, smooth).unwrap()))
 }
 
 /// An L with a square hole, the corners clockwise.

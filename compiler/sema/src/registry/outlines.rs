@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use arsc_diagnostics::Diagnostic;
 use arsc_diagnostics::codes::sema as codes;
-use arsc_geometry::{DAffine3, DVec2, HullError, Polygon, PolygonError, Polyhedron, Prism};
+use arsc_geometry::{DAffine3, DVec2, HullError, Lathe, Polygon, PolygonError, Polyhedron, Prism};
 use arsc_ir::Shape;
 
 use super::{Builtin, Param};
 use crate::code::Site;
 use crate::eval::{Eval, Machine};
-use crate::types::Type::{self, Float, Point, Solid, Vec2};
+use crate::types::Type::{self, Bool, Float, Point, Solid, Vec2};
 use crate::value::Value;
 
 pub fn builtins() -> Vec<Builtin> {
@@ -27,6 +27,15 @@ pub fn builtins() -> Vec<Builtin> {
                     .default_value("[]", Value::list(vec![])),
             )
             .runs(Solid, prism),
+        Builtin::new(
+            "lathe",
+            "A solid of revolution: a profile of points (radius, z), turned about the z axis. Its ends are joined to the \
+             axis by lines of constant z, or to each other if `closed`.",
+        )
+        .param(Param::new("profile", Type::list(Vec2), "points (radius, z), up or down; radii are not negative"))
+        .param(Param::new("closed", Bool, "join the last point to the first: a ring of this section").bool(false))
+        .param(Param::new("smooth", Bool, "a cubic spline (Catmull-Rom) through the points").bool(false))
+        .runs(Solid, lathe),
         Builtin::new("polyhedron", "The convex hull of points. Points in one plane make one face.")
             .param(Param::new("points", Type::list(Point), "four or more, not all in one plane"))
             .runs(Solid, polyhedron),
@@ -67,6 +76,13 @@ fn bad_polygon(error: &PolygonError, site: &Site) -> Box<Diagnostic> {
         diagnostic = Box::new(diagnostic.help("go round the outline once, corner by corner; corners count from 0"));
     }
     diagnostic
+}
+
+fn lathe(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
+    let points = corners(m, &args[0], site)?;
+    let solid = Lathe::new(points, args[1].as_bool(), args[2].as_bool())
+        .map_err(|error| site.fail_arg(0, codes::OUT_OF_RANGE, "this profile bounds no solid", error.to_string()))?;
+    m.solid(Shape::Lathe(Arc::new(solid)), DAffine3::IDENTITY, site)
 }
 
 fn polyhedron(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {

@@ -12,7 +12,7 @@ use super::{Builtin, Param};
 use crate::code::Site;
 use crate::eval::{Eval, Machine};
 use crate::types::Type;
-use crate::types::Type::{Bool, Float, Point, Solid, Str, Vec2, Vec3};
+use crate::types::Type::{Bool, Float, Point, Solid, Str, Vec3};
 use crate::value::Value;
 
 fn solid(name: &'static str, doc: &'static str) -> Builtin {
@@ -248,9 +248,6 @@ fn files() -> Vec<Builtin> {
 
 fn not_yet() -> Vec<Builtin> {
     vec![
-        solid("lathe", "A profile (radius, z), turned about the z axis.")
-            .param(Param::new("profile", Type::list(Vec2), "points (radius, z)"))
-            .later(Solid, "the solid of revolution"),
         solid("height_field", "A solid between z = 0 and a height given by an image.")
             .param(Param::new("path", Str, "image file, relative to the script"))
             .param(Param::new("size", Vec3, "extent").vec3([1.0; 3]).positive())
