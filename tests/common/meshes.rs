@@ -1,5 +1,7 @@
 //! Closed meshes for tests and benchmarks, with shared vertices, counter-clockwise from outside.
 
+#![allow(dead_code)] // Each program uses its part.
+
 use arsc_geometry::TriangleMesh;
 
 /// A grid of `rows` × `columns` points that closes in both directions.

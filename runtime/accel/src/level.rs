@@ -2,9 +2,13 @@
 
 use std::sync::Arc;
 
-use arsc_embree::{Bounds, BuildQuality, Callbacks, Device, GeometryId, Scene as EmbreeScene, SceneBuilder, Step};
+use arsc_embree::{
+    Bounds, BuildQuality, Callbacks, Candidate as NativeCandidate, Device, GeometryId, Scene as EmbreeScene,
+    SceneBuilder, Step,
+};
 use arsc_geometry::Aabb;
 
+use crate::facets::Facet;
 use crate::nearest::{Candidate, Target};
 use crate::query::{Extent, Mode, Query, View};
 use crate::solid::{Nearness, SolidModel, SolidRay};
@@ -108,7 +112,38 @@ impl Level {
     /// Holds all primitives.
     pub fn bounds(&self) -> Aabb {
         let all = 0..self.primitive_count() as u32;
-        all.fold(Aabb::EMPTY, |hull, primitive| hull.union(&self.primitive_bounds(primitive)))
+        let hull = all.fold(Aabb::EMPTY, |hull, primitive| hull.union(&self.primitive_bounds(primitive)));
+        let corners = self.facets().iter().flat_map(|facet| facet.corners(&self.solids));
+        corners.fold(hull, |hull, p| hull.union(&Aabb::new(p, p)))
+    }
+
+    /// Triangles that are boundary by themselves.
+    pub fn facets(&self) -> &[Facet] {
+        match &self.tracer {
+            Tracer::Local(local) => &local.facets,
+            _ => &[],
+        }
+    }
+
+    /// Gives the facets to Embree, filtered, a little larger than they are.
+    pub fn add_facets<C: Callbacks>(&self, builder: &mut SceneBuilder<C>, extent: &Extent) -> Result<(), AccelError> {
+        let facets = self.facets();
+        if facets.is_empty() {
+            return Ok(());
+        }
+        let vertices: Vec<[f32; 3]> =
+            facets.iter().flat_map(|facet| extent.grown(facet.corners(&self.solids))).collect();
+        let triangles: Vec<[u32; 3]> = (0..facets.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        builder.triangles(&vertices, &triangles, true)?;
+        Ok(())
+    }
+
+    /// Meets a facet that Embree's traversal has come to.
+    #[inline]
+    pub fn visit_facet(&self, facet: u32, query: &mut Query) {
+        if !query.probing {
+            self.facets()[facet as usize].visit(&self.solids, query);
+        }
     }
 
     /// Boxes that the solids are found by.
@@ -212,6 +247,8 @@ impl Prototype {
         let primitives = level.primitive_count();
         let mut builder = SceneBuilder::new(device, Arc::new(Prototype { level, extent }), BuildQuality::High)?;
         builder.user_geometry(primitives)?;
+        let prototype = builder.callbacks();
+        prototype.level.add_facets(&mut builder, &prototype.extent)?;
         Ok(builder.commit()?)
     }
 
@@ -241,6 +278,17 @@ impl Callbacks for Prototype {
 
     fn occluded(&self, query: &mut Query, _: GeometryId, primitive: u32, _: Option<GeometryId>) -> bool {
         self.level.visit(primitive, query);
+        query.ends()
+    }
+
+    fn filter(&self, query: &mut Query, candidate: NativeCandidate) -> Step {
+        let before = query.limit();
+        self.level.visit_facet(candidate.primitive, query);
+        query.step(before)
+    }
+
+    fn filter_occluded(&self, query: &mut Query, candidate: NativeCandidate) -> bool {
+        self.level.visit_facet(candidate.primitive, query);
         query.ends()
     }
 }

@@ -10,6 +10,7 @@ mod coincidence;
 mod counted;
 mod error;
 mod expression;
+mod facets;
 mod frame;
 mod geometry;
 mod hit;

@@ -362,7 +362,8 @@ impl Scene {
             Target::Solid { solid, transition } => {
                 let member = &self.members[solid as usize];
                 let point = member.surface(&transition, p);
-                (point, point.n, transition.face, transition.flipped, true)
+                let ns = member.shading_normal(&transition, p).map_or(point.n, |ns| on_side_of(ns, point.n));
+                (point, ns, transition.face, transition.flipped, true)
             }
             Target::Flat { surface } => {
                 let SurfaceModel::Flat(flat) = &self.surfaces()[surface as usize] else { unreachable!() };
@@ -473,6 +474,18 @@ impl Member {
         oracle::transitions(&self.model, &near, |_| false)
     }
 
+    /// The interpolated normal of a transition at `p`, unit, in the world; `None` where it is the surface's own.
+    fn shading_normal(&self, transition: &Transition, p: DVec3) -> Option<DVec3> {
+        let leaf = &self.model.leaves[transition.leaf as usize];
+        match &self.frame {
+            None => leaf.shading_normal(p, transition.face),
+            Some(frame) => {
+                let local = leaf.shading_normal(frame.object_from_world.transform_point3(p), transition.face)?;
+                frame.object_from_world.matrix3.transpose().mul_vec3(local).try_normalize()
+            }
+        }
+    }
+
     /// The surface point of a transition at `p`, in the world.
     fn surface(&self, transition: &Transition, p: DVec3) -> Foot {
         let leaf = &self.model.leaves[transition.leaf as usize];
@@ -485,6 +498,10 @@ impl Member {
         }
         self.frame.as_ref().map_or(point, |frame| frame.to_world(&point))
     }
+}
+
+fn on_side_of(ns: DVec3, n: DVec3) -> DVec3 {
+    if ns.dot(n) < 0.0 { -ns } else { ns }
 }
 
 fn is_traceable(ray: &Ray) -> bool {

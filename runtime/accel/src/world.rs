@@ -24,6 +24,8 @@ enum Kind {
     Solids,
     Flats,
     Instances,
+    /// Of solids; see [`crate::facets`].
+    Facets,
     Triangles,
     Quads,
 }
@@ -222,6 +224,9 @@ impl World {
         if !native.quads.is_empty() {
             self.kinds.push(Kind::Quads);
         }
+        if !self.level.facets().is_empty() {
+            self.kinds.push(Kind::Facets);
+        }
         let kinds = self.kinds.clone();
         let mut builder = SceneBuilder::new(device()?, Arc::new(self), BuildQuality::High)?;
         for (_, count) in users {
@@ -233,6 +238,8 @@ impl World {
         if kinds.contains(&Kind::Quads) {
             builder.quads(&native.quad_vertices, &native.quads, true)?;
         }
+        let world = builder.callbacks();
+        world.level.add_facets(&mut builder, &world.extent)?;
         Ok(builder.commit()?)
     }
 
@@ -311,7 +318,7 @@ impl World {
                     self.visit_flat(surface, flat, query);
                 }
             }
-            Kind::Triangles | Kind::Quads => {}
+            Kind::Facets | Kind::Triangles | Kind::Quads => {}
         }
     }
 
@@ -321,6 +328,7 @@ impl World {
                 let (surface, triangle) = self.triangles[candidate.primitive as usize];
                 (surface, triangle..triangle + 1)
             }
+            Kind::Facets => return self.level.visit_facet(candidate.primitive, query),
             _ => (self.quads[candidate.primitive as usize], 0..2),
         };
         if let SurfaceModel::Triangles(mesh) = &self.surfaces[surface as usize] {

@@ -68,6 +68,10 @@ impl<C: Callbacks> SceneBuilder<C> {
         Ok(SceneBuilder { scene, count: 0 })
     }
 
+    pub fn callbacks(&self) -> Arc<C> {
+        self.scene.callbacks.clone()
+    }
+
     /// User primitives, answered by [`Callbacks`].
     pub fn user_geometry(&mut self, primitives: usize) -> Result<GeometryId, EmbreeError> {
         let count = index_count(primitives)?;

@@ -7,6 +7,7 @@ use crate::cells::dominance;
 use crate::cells::split::{best_split, halves, state};
 use crate::cells::{CellSet, PAD, TABLE_LEAVES, truth_table};
 use crate::expression::{Expression, Token, Word, bounds, substitute};
+use crate::facets::mesh_of;
 use crate::solid::SolidModel;
 
 /// Pairs of leaves are compared up to so many; beyond, cells are cut first.
@@ -33,7 +34,7 @@ struct Work {
     depth: u32,
 }
 
-/// Adds the cells of a solid. Solids whose box is infinite are cut within the hull of their bounded leaves; what is
+/// Adds the cells of a solid, but for the surfaces of its mesh leaves, which are those of [`crate::facets`]. Solids whose box is infinite are cut within the hull of their bounded leaves; what is
 /// beyond it is [`append_outer`]'s.
 pub fn append_solid(set: &mut CellSet, number: u32, solid: &SolidModel, budget: &Budget) {
     let Expression::Tokens(tokens) = &solid.expression else { return };
@@ -74,7 +75,7 @@ pub fn append_outer(set: &mut CellSet, number: u32, solid: &SolidModel) -> Optio
 
 /// The expression without the leaves that its value does not depend on, as far as a truth table tells, and the leaves that
 /// are left; `None` when it is constant.
-fn essential(tokens: Vec<Token>) -> Option<(Vec<Token>, Vec<u32>)> {
+pub fn essential(tokens: Vec<Token>) -> Option<(Vec<Token>, Vec<u32>)> {
     let leaves = leaves_of(&tokens);
     if leaves.len() > TABLE_LEAVES {
         return Some((tokens, leaves));
@@ -93,7 +94,7 @@ fn essential(tokens: Vec<Token>) -> Option<(Vec<Token>, Vec<u32>)> {
 }
 
 /// Distinct leaves of an expression, ascending.
-fn leaves_of(tokens: &[Token]) -> Vec<u32> {
+pub fn leaves_of(tokens: &[Token]) -> Vec<u32> {
     let literal = |token: &Token| match token.word() {
         Word::Literal { leaf, .. } => Some(leaf),
         Word::Node { .. } => None,
@@ -179,6 +180,9 @@ impl<'a> Builder<'a> {
             if compare && self.drop_dominated(&mut work.tokens, &padded)? {
                 (work.tokens, leaves) = essential(std::mem::take(&mut work.tokens))?;
             }
+            if leaves.iter().all(|&leaf| self.is_covered(leaf)) {
+                return None;
+            }
             let tight = self.tightened(&work.region, &leaves, &work.tokens);
             if tight.is_empty() {
                 return None;
@@ -190,6 +194,11 @@ impl<'a> Builder<'a> {
             }
         }
         Some(leaves)
+    }
+
+    /// The leaf's surface has cells and facets of its own.
+    fn is_covered(&self, leaf: u32) -> bool {
+        mesh_of(&self.solid.leaves[leaf as usize]).is_some()
     }
 
     /// With the current states put in; `None` when constant.
@@ -225,7 +234,8 @@ impl<'a> Builder<'a> {
     /// any leaf has its surface.
     fn tightened(&self, region: &Aabb, leaves: &[u32], tokens: &[Token]) -> Aabb {
         let leaf_bounds = |leaf: u32| *self.solid.leaves[leaf as usize].bounds();
-        let hull = leaves.iter().fold(Aabb::EMPTY, |hull, &leaf| hull.union(&leaf_bounds(leaf)));
+        let surfaces = leaves.iter().filter(|&&leaf| !self.is_covered(leaf));
+        let hull = surfaces.fold(Aabb::EMPTY, |hull, &leaf| hull.union(&leaf_bounds(leaf)));
         region.intersection(&hull).intersection(&bounds(tokens, false, leaf_bounds)).intersection(&bounds(
             tokens,
             true,

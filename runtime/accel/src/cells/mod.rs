@@ -17,13 +17,14 @@ use glam::DVec3;
 
 use crate::expression::Token;
 
-pub use build::{append_outer, append_solid, core};
+pub use build::{append_outer, append_solid, core, essential, leaves_of};
 pub use query::{Entry, Line, Window, entry, leaf_transitions, union_transitions};
+pub use split::state;
 
 /// Expressions of at most so many leaves are kept as truth tables.
 pub const TABLE_LEAVES: usize = 6;
 /// The margin around a cell in which its expression holds, in tolerances of the solid.
-const PAD: f64 = 4.0;
+pub const PAD: f64 = 4.0;
 
 /// A box and what the solid is in it.
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +75,7 @@ impl Kernel {
         match (placed.direct(), placed.shape()) {
             (Some(&Direct::Ball { center, radius }), _) => Kernel::Ball { center, radius },
             (Some(&Direct::Box { min, max }), _) => Kernel::Box { min, max },
-            (_, Shape::Torus { .. }) => Kernel::Costly,
+            (_, Shape::Torus { .. } | Shape::Mesh(_)) => Kernel::Costly,
             _ => Kernel::Placed,
         }
     }
@@ -124,7 +125,7 @@ impl CellSet {
     }
 
     /// Adds a cell; `leaves` are those of `tokens`, ascending, and index `placed`. Returns its number.
-    fn push(&mut self, solid: u32, bounds: Aabb, leaves: &[u32], tokens: &[Token], placed: &[Placed]) -> u32 {
+    pub fn push(&mut self, solid: u32, bounds: Aabb, leaves: &[u32], tokens: &[Token], placed: &[Placed]) -> u32 {
         let slot = |leaf: u32| leaves.binary_search(&leaf).map_or(0, |i| i as u32);
         let first_leaf = self.leaves.len() as u32;
         self.leaves.extend(leaves.iter().map(|&leaf| CellLeaf::new(leaf, placed)));

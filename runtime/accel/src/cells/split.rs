@@ -19,6 +19,7 @@ pub fn weight(shape: &Shape) -> f64 {
     match shape {
         Shape::Torus { .. } => 12.0,
         Shape::Cone { .. } | Shape::Cylinder { .. } | Shape::Paraboloid(_) | Shape::Hyperboloid(_) => 2.0,
+        Shape::Mesh(_) => 40.0,
         Shape::Prism(_) | Shape::Polyhedron(_) => 6.0,
         Shape::Superquadric(_) | Shape::Lathe(_) => 40.0,
         _ => 1.0,

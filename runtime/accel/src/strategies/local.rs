@@ -4,6 +4,7 @@ use arsc_geometry::Aabb;
 
 use crate::Budget;
 use crate::cells::{self, CellSet, Line, Window};
+use crate::facets::{self, Facet, mesh_of};
 use crate::level::Solids;
 use crate::query::{Extent, Mode, Query, slab};
 use crate::solid::SolidRay;
@@ -23,6 +24,8 @@ pub struct Local {
     cells: CellSet,
     /// Primitives after the cells.
     pub members: Members,
+    /// Native triangles.
+    pub facets: Vec<Facet>,
     outer: CellSet,
     open: Vec<Open>,
 }
@@ -34,7 +37,8 @@ impl Local {
             let core = cells::core(solid);
             if !core.is_empty() && !Extent::admits(&core) {
                 local.open.push(Open::Whole { solid: number });
-            } else if !local.members.admit(number, solid) {
+            } else if solid.leaves.iter().any(|leaf| mesh_of(leaf).is_some()) || !local.members.admit(number, solid) {
+                facets::append(&mut local.facets, &mut local.cells, number, solid, &share);
                 cells::append_solid(&mut local.cells, number, solid, &share);
                 if let Some((cell, core)) = cells::append_outer(&mut local.outer, number, solid) {
                     local.open.push(Open::Outer { cell, core });
@@ -108,7 +112,7 @@ impl SolidTracer for Local {
     }
 
     fn bytes(&self) -> usize {
-        self.cells.bytes() + self.members.bytes() + self.outer.bytes()
+        self.cells.bytes() + self.members.bytes() + self.outer.bytes() + size_of_val(&self.facets[..])
     }
 
     fn visit_open(&self, solids: &Solids, query: &mut Query) {

@@ -2,10 +2,12 @@
 //!
 //! Boxes are single precision, as the vertices are, and so exact. Deterministic: the same mesh gives the same tree.
 
-use glam::Vec3;
+use std::rc::Rc;
+
+use glam::{DVec3, Vec3};
 use smallvec::SmallVec;
 
-use crate::TriangleMesh;
+use crate::{Aabb, TriangleMesh};
 
 const BINS: usize = 16;
 /// Leaves have at most so many triangles, unless their centres coincide.
@@ -157,6 +159,22 @@ impl Bvh {
             }
         }
         true
+    }
+
+    /// See [`crate::ClosedMesh::descend`].
+    pub fn descend<S>(&self, start: S, mut node: impl FnMut(&S, Aabb) -> Option<S>, mut triangle: impl FnMut(&S, u32)) {
+        let wide = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+        let mut stack = vec![(0u32, Rc::new(start))];
+        while let Some((at, above)) = stack.pop() {
+            let at = &self.nodes[at as usize];
+            let Some(state) = node(&above, Aabb::new(wide(at.min), wide(at.max))) else { continue };
+            let state = Rc::new(state);
+            if at.count == 0 {
+                stack.extend([(at.first + 1, state.clone()), (at.first, state)]);
+            } else {
+                self.order[at.first as usize..][..at.count as usize].iter().for_each(|&i| triangle(&state, i));
+            }
+        }
     }
 
     pub fn root(&self) -> &Node {

@@ -20,7 +20,9 @@ use smallvec::SmallVec;
 use crate::{Aabb, Crossings, LocalPoint, TriangleMesh};
 use bvh::Bvh;
 
-pub use projection::{Projected, Projection, crossing};
+use projection::crossing;
+
+pub use projection::Projection;
 
 /// Direction of the rays that decide membership: about z, along no plane that meshes are made of.
 const PROBE: DVec3 = DVec3::new(0.132_719, 0.071_933, 1.0);
@@ -205,7 +207,7 @@ impl ClosedMesh {
         self.bvh.visit(
             |node| line.meets_box(node.min, node.max),
             |triangle| {
-                if let Some(t) = self.crossing(&line, triangle) {
+                if let Some((t, _)) = self.crossing(&line, triangle) {
                     visit(t, triangle);
                 }
                 true
@@ -213,12 +215,18 @@ impl ClosedMesh {
         );
     }
 
-    /// Where the line passes through a triangle.
+    /// Where the line passes through a triangle, and whether it goes in there.
     #[inline]
-    pub fn crossing(&self, line: &Projection, triangle: u32) -> Option<f64> {
+    pub fn crossing(&self, line: &Projection, triangle: u32) -> Option<(f64, bool)> {
         let corners = self.mesh.triangles[triangle as usize];
         let [a, b, c] = corners.map(|i| line.project(self.mesh.positions[i as usize].map(f64::from)));
-        crossing(a, b, c)
+        crossing(line, a, b, c)
+    }
+
+    /// Goes down the hierarchy of boxes, which hold their triangles: `node` makes the state below a box of that above it, or
+    /// `None` where nothing below matters.
+    pub fn descend<S>(&self, start: S, node: impl FnMut(&S, Aabb) -> Option<S>, triangle: impl FnMut(&S, u32)) {
+        self.bvh.descend(start, node, triangle);
     }
 
     /// Whether any triangle reaches into the box, after the map; never wrongly no.

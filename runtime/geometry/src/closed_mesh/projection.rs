@@ -65,23 +65,24 @@ impl Projection {
     }
 }
 
-/// The parameter at which the line passes through the triangle, if it does.
+/// The parameter at which the line passes through the triangle, if it does, and whether it goes against the normal.
 ///
 /// Its error is some 2⁻⁵⁰ of the largest number involved over the cosine of the angle of incidence; it never leaves the
 /// stretch of the line along which the triangle lies.
 #[inline]
-pub fn crossing(a: Projected, b: Projected, c: Projected) -> Option<f64> {
+pub fn crossing(line: &Projection, a: Projected, b: Projected, c: Projected) -> Option<(f64, bool)> {
     let (u, v, w) = (product(b, c), product(c, a), product(a, b));
     let sign = side(b, c, u);
     if sign == 0 || side(c, a, v) != sign || side(a, b, w) != sign {
         return None;
     }
+    let enters = (sign > 0) != (line.inverse > 0.0);
     let area = u.0 + v.0 + w.0;
     if area.abs() <= EDGE_ON * (u.1 + v.1 + w.1) {
-        return Some(edge_on(a, b, c));
+        return Some((edge_on(a, b, c), enters));
     }
     let t = (u.0 * a.t + v.0 * b.t + w.0 * c.t) / area;
-    Some(t.clamp(a.t.min(b.t).min(c.t), a.t.max(b.t).max(c.t)))
+    Some((t.clamp(a.t.min(b.t).min(c.t), a.t.max(b.t).max(c.t)), enters))
 }
 
 /// The same for a triangle that is hardly more than a line in the projection: the middle of the stretch between its edges,
