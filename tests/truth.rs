@@ -16,8 +16,12 @@
 
 #[path = "truth/dd.rs"]
 mod dd;
+#[path = "truth/flat.rs"]
+mod flat;
 #[path = "truth/membership.rs"]
 mod membership;
+#[path = "common/meshes.rs"]
+mod meshes;
 #[path = "truth/scenes.rs"]
 mod scenes;
 
@@ -238,8 +242,8 @@ impl Trial<'_> {
         }
         // The sine at which a ray may graze a surface whose normal is taken at a point that is off by the tolerance.
         let cosine = hit.ng.dot(self.ray.dir);
-        ((cosine < 0.0) != entering && cosine.abs() > 1e-4)
-            .then(|| format!("normal {} for entering {entering}", hit.ng))
+        let wrong = (cosine < 0.0) != entering && cosine.abs() > 1e-4 && !body.leaves[leaf as usize].is_ridge(hit.p);
+        wrong.then(|| format!("normal {} for entering {entering}", hit.ng))
     }
 
     fn check(&self, intervals: &[Interval], t_max: f64, tally: &mut Tally) -> Option<String> {
@@ -337,14 +341,10 @@ fn check_all(seeds: impl Iterator<Item = u64>, rays: usize) {
     assert!((unowned as f64) < 0.1 * hits as f64, "{unowned} of {hits} owners not told");
 }
 
-/// Seeds that found something: a half-space less itself (10657, 10756, 10778, 10682, 11119), a small solid before the
-/// face of a large one (10010), a line through the tip of a cone (10715).
-const FOUND: [u64; 7] = [10657, 10756, 10778, 10682, 11119, 10010, 10715];
-
-/// A slice: 60 scenes of 150 rays, and what once failed.
+/// A slice: 60 scenes of 150 rays. What once failed is in `accel/tests/found.rs` and `geometry/tests/oracle.rs`.
 #[test]
 fn every_strategy_tells_the_truth() {
-    check_all((0..60).chain(FOUND), 150);
+    check_all(0..60, 150);
 }
 
 /// 1 200 scenes of 8 400 rays: 10⁷, with other seeds than the slice.

@@ -69,6 +69,7 @@ pub fn cube(min: [f64; 3], max: [f64; 3]) -> TriangleMesh {
 }
 
 /// Both, side by side or one within the other.
+#[allow(dead_code)]
 pub fn joined(mut a: TriangleMesh, b: &TriangleMesh) -> TriangleMesh {
     let first = a.positions.len() as u32;
     a.positions.extend(&b.positions);

@@ -41,8 +41,57 @@ impl Dd {
     pub fn to_f64(self) -> f64 {
         self.hi
     }
+}
 
-    pub fn sqrt(self) -> Dd {
+/// What the definitions of the shapes need of a number: plain doubles tell where it is clear, double-doubles where it is not.
+pub trait Number:
+    Copy
+    + From<f64>
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+{
+    fn to_f64(self) -> f64;
+    fn sqrt(self) -> Self;
+    fn over(self, b: Self) -> Self;
+
+    fn abs(self) -> Self {
+        if self.to_f64() < 0.0 { -self } else { self }
+    }
+
+    fn max(self, other: Self) -> Self {
+        if (self - other).to_f64() < 0.0 { other } else { self }
+    }
+
+    fn squared(self) -> Self {
+        self * self
+    }
+}
+
+impl Number for f64 {
+    fn to_f64(self) -> f64 {
+        self
+    }
+
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+
+    fn over(self, b: f64) -> f64 {
+        self / b
+    }
+}
+
+impl Number for Dd {
+    fn to_f64(self) -> f64 {
+        self.hi
+    }
+
+    fn sqrt(self) -> Dd {
         if self.hi <= 0.0 {
             return Dd::ZERO;
         }
@@ -51,24 +100,12 @@ impl Dd {
         quick_sum(root, rest.hi / (2.0 * root))
     }
 
-    pub fn over(self, b: Dd) -> Dd {
+    fn over(self, b: Dd) -> Dd {
         let first = self.hi / b.hi;
         let rest = self - b * first;
         let second = rest.hi / b.hi;
         let rest = rest - b * second;
         quick_sum(first, second) + Dd::from(rest.hi / b.hi)
-    }
-
-    pub fn abs(self) -> Dd {
-        if self.hi < 0.0 { -self } else { self }
-    }
-
-    pub fn max(self, other: Dd) -> Dd {
-        if (self - other).hi < 0.0 { other } else { self }
-    }
-
-    pub fn squared(self) -> Dd {
-        self * self
     }
 }
 

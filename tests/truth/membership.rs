@@ -9,7 +9,8 @@ use arsc_accel::{Csg, CsgLeaf, Shape};
 use arsc_geometry::{Hyperboloid, Paraboloid};
 use glam::{DAffine3, DVec3};
 
-use crate::dd::Dd;
+use crate::dd::{Dd, Number};
+use crate::flat;
 
 /// A point, or a row of a map, in double-double.
 type V = [Dd; 3];
@@ -29,7 +30,7 @@ pub struct Leaf {
 /// Open (`None`) or decided.
 pub type Answer = Option<bool>;
 
-fn dot(a: &V, b: &V) -> Dd {
+fn dot<N: Number>(a: &[N; 3], b: &[N; 3]) -> N {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -39,6 +40,10 @@ fn cross(a: &V, b: &V) -> V {
 
 pub fn exact(v: DVec3) -> V {
     v.to_array().map(Dd::from)
+}
+
+fn plain<N: Number>(v: &[N; 3]) -> DVec3 {
+    DVec3::from_array(v.map(N::to_f64))
 }
 
 impl Leaf {
@@ -60,7 +65,6 @@ impl Leaf {
         let (yz, zx, xy) = (cross(&y, &z), cross(&z, &x), cross(&x, &y));
         let det = dot(&x, &yz);
         let rows = [over(yz, det), over(zx, det), over(xy, det)].map(|row| (row, -dot(&row, &origin)));
-        let plain = |v: &V| DVec3::from_array(v.map(Dd::to_f64));
         let shrink = rows.iter().map(|(row, _)| plain(row).length_squared()).sum::<f64>().sqrt();
         let quick = DAffine3 {
             matrix3: glam::DMat3::from_cols(plain(&rows[0].0), plain(&rows[1].0), plain(&rows[2].0)).transpose(),
@@ -75,13 +79,23 @@ impl Leaf {
     /// The value at a point, and its bound in object space below which the point is near.
     pub fn answer(&self, p: &V, plain: DVec3, near: f64) -> Answer {
         let threshold = near * self.shrink;
-        let quick = value(&self.shape, &exact(self.quick.transform_point3(plain))).to_f64();
+        if let Shape::Superquadric(superquadric) = &self.shape {
+            return flat::superquadric(superquadric, self.quick.transform_point3(plain), threshold);
+        }
+        let quick = value(&self.shape, &self.quick.transform_point3(plain).to_array());
         let error = self.quick_slope * plain.abs().max_element() + self.quick_floor;
         if quick.abs() > 2.0 * error + threshold {
             return Some(quick < 0.0);
         }
         let value = self.value(p).to_f64();
         (value.abs() > threshold).then_some(value < 0.0)
+    }
+
+    /// On the sharp ridges of a pinched superellipsoid, which has two normals there.
+    pub fn is_ridge(&self, p: DVec3) -> bool {
+        let Shape::Superquadric(superquadric) = &self.shape else { return false };
+        let pinched = superquadric.exponents().into_iter().any(|e| e > 2.0);
+        pinched && self.quick.transform_point3(p).abs().min_element() < 1e-6
     }
 
     pub fn value(&self, p: &V) -> Dd {
@@ -94,23 +108,23 @@ impl Leaf {
 const CLOSE: f64 = 1e-3;
 
 /// Distance from the z axis.
-fn ring(p: &V) -> Dd {
+fn ring<N: Number>(p: &[N; 3]) -> N {
     (p[0].squared() + p[1].squared()).sqrt()
 }
 
-fn slab(z: Dd, low: f64, high: f64) -> Dd {
+fn slab<N: Number>(z: N, low: f64, high: f64) -> N {
     (-z + low).max(z - high)
 }
 
 /// Negative inside, zero on the boundary; its size is at most the distance to the boundary, as far as that is small.
-fn value(shape: &Shape, p: &V) -> Dd {
+fn value<N: Number>(shape: &Shape, p: &[N; 3]) -> N {
     match *shape {
         Shape::Sphere { radius } => dot(p, p).sqrt() - radius,
         Shape::Box { min, max } => slab(p[0], min.x, max.x).max(slab(p[1], min.y, max.y)).max(slab(p[2], min.z, max.z)),
         Shape::Cylinder { radius, height } => (ring(p) - radius).max(slab(p[2], 0.0, height)),
         Shape::InfiniteCylinder { radius } => ring(p) - radius,
         Shape::Cone { base_radius, top_radius, height } => {
-            let slope = (Dd::from(top_radius) - base_radius).over(Dd::from(height));
+            let slope = (N::from(top_radius) - base_radius).over(N::from(height));
             let slant = (slope.squared() + 1.0).sqrt();
             let side = (ring(p) - slope * p[2] - base_radius).over(slant);
             side.max(slab(p[2], 0.0, height))
@@ -118,21 +132,24 @@ fn value(shape: &Shape, p: &V) -> Dd {
         Shape::Torus { major, minor } => ((ring(p) - major).squared() + p[2].squared()).sqrt() - minor,
         Shape::HalfSpace => p[2],
         Shape::Paraboloid(Paraboloid { radius, height }) => {
-            let latus = Dd::from(radius).squared().over(Dd::from(height));
+            let latus = N::from(radius).squared().over(N::from(height));
             let level = p[0].squared() + p[1].squared() - latus * p[2];
             let reach = ring(p) + CLOSE * radius.max(height);
             let steepest = (reach.squared() * 4.0 + latus.squared()).sqrt();
             level.over(steepest).max(p[2] - height)
         }
         Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets }) => {
-            let steep = Dd::from(slope).squared();
-            let offset = Dd::from(radius).squared() * if two_sheets { -1.0 } else { 1.0 };
+            let steep = N::from(slope).squared();
+            let offset = N::from(radius).squared() * if two_sheets { -1.0 } else { 1.0 };
             let level = p[0].squared() + p[1].squared() - steep * p[2].squared() - offset;
             let close = CLOSE * shape.magnitude();
             let (across, along) = (ring(p) + close, steep * (p[2].abs() + close));
             let steepest = (across.squared() + along.squared()).sqrt() * 2.0;
             level.over(steepest).max(slab(p[2], -half_height, half_height))
         }
+        Shape::Mesh(ref mesh) => N::from(flat::mesh(mesh.mesh(), plain(p))),
+        Shape::Polyhedron(ref polyhedron) => N::from(flat::polyhedron(polyhedron, plain(p))),
+        Shape::Prism(ref prism) => N::from(flat::prism(prism, plain(p))),
         #[allow(unreachable_patterns)]
         ref other => panic!("no membership for {other:?}"),
     }

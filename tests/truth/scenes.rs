@@ -1,6 +1,6 @@
 //! Random scenes and rays for the truth test, a function of a seed.
 //!
-//! Families, by `seed % 4`: *friendly* (sizes and maps at random, mirrored and sheared ones among them), *hostile* (sizes and
+//! Families, by turns: *friendly* (sizes and maps at random, mirrored and sheared ones among them), *hostile* (sizes and
 //! places on a lattice, so that faces coincide and surfaces touch), *scales* (several solids from 10⁻⁹ to 10⁷ in one scene),
 //! *crowds* (up to 200 leaves, and an instance).
 
@@ -8,10 +8,14 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use arsc_accel::{Csg, CsgLeaf, Instance, MaterialIndex, Ray, SceneGeometry, Shape, Solid};
-use arsc_geometry::{Aabb, Hyperboloid, Paraboloid, Placed};
+use arsc_geometry::{
+    Aabb, ClosedMesh, DVec2, Hyperboloid, Paraboloid, Placed, Polygon, Polyhedron, Prism, Superquadric,
+};
 use glam::{DAffine3, DMat3, DVec3};
 use rand::Rng;
 use rand_pcg::Pcg64;
+
+use crate::meshes;
 
 /// A scene, and what rays are aimed by.
 pub struct Case {
@@ -32,7 +36,7 @@ fn lattice(rng: &mut Pcg64, reach: i32) -> DVec3 {
 
 /// Every kind of shape from three sizes.
 fn shape(rng: &mut Pcg64, a: f64, b: f64, c: f64) -> Shape {
-    match rng.random_range(0..26) {
+    match rng.random_range(0..33) {
         0..5 => Shape::Sphere { radius: a },
         5..9 => Shape::Box { min: DVec3::new(-a, -b, -c), max: DVec3::new(b, c, a) },
         9..12 => Shape::Cylinder { radius: 0.5 * a, height: 2.0 * b },
@@ -42,8 +46,51 @@ fn shape(rng: &mut Pcg64, a: f64, b: f64, c: f64) -> Shape {
         20..22 => Shape::Hyperboloid(Hyperboloid { radius: a, slope: b, half_height: c, two_sheets: false }),
         22 => Shape::Hyperboloid(Hyperboloid { radius: a, slope: b, half_height: c + a / b, two_sheets: true }),
         23 => Shape::InfiniteCylinder { radius: 0.5 * a },
-        _ => Shape::HalfSpace,
+        24..26 => Shape::HalfSpace,
+        26..28 => prism(a, b, c),
+        28..30 => polyhedron(a, b, c),
+        30 => superquadric(a, b, c),
+        _ => mesh(a, b, c),
     }
+}
+
+/// An L, or a plate with a hole.
+fn prism(a: f64, b: f64, c: f64) -> Shape {
+    let at = DVec2::new;
+    let rings = if b < c {
+        vec![vec![at(-a, -b), at(a, -b), at(a, 0.0), at(0.0, 0.0), at(0.0, c), at(-a, c)]]
+    } else {
+        let (x, y) = (0.5 * a, 0.5 * b);
+        let outline = vec![at(-a, -b), at(a, -b), at(a, b), at(-a, b)];
+        vec![outline, vec![at(-x, -y), at(-x, y), at(x, y), at(x, -y)]]
+    };
+    let polygon = Polygon::new(rings).expect("a simple polygon");
+    Shape::Prism(Arc::new(Prism::new(polygon, c).expect("a height")))
+}
+
+/// An octahedron of three sizes, or a wedge.
+fn polyhedron(a: f64, b: f64, c: f64) -> Shape {
+    let (x, y, z) = (DVec3::X * a, DVec3::Y * b, DVec3::Z * c);
+    let points = if a < b { vec![x, -x, y, -y, z, -z] } else { vec![-x, x, -x + y, x + y, -x + z, x + z] };
+    Shape::Polyhedron(Arc::new(Polyhedron::new(points).expect("a hull")))
+}
+
+/// Round, box-like and pinched ones.
+fn superquadric(a: f64, b: f64, c: f64) -> Shape {
+    let exponent = |x: f64, y: f64| if x < y { 0.3 + 0.5 * x } else { 0.5 + 1.5 * x };
+    Shape::Superquadric(Arc::new(Superquadric::new(exponent(a, b), exponent(b, c)).expect("exponents")))
+}
+
+/// A box, a ball or a ring of triangles.
+fn mesh(a: f64, b: f64, c: f64) -> Shape {
+    let triangles = if a < b {
+        meshes::cube([-a, -b, 0.0], [a, b, c])
+    } else if b < c {
+        meshes::sphere(4, 7, a)
+    } else {
+        meshes::torus(5, 4, a + 0.25, 0.25)
+    };
+    Shape::Mesh(Arc::new(ClosedMesh::new("truth".into(), triangles).expect("a closed mesh").0))
 }
 
 fn friendly_leaf(rng: &mut Pcg64) -> (Shape, DAffine3) {
@@ -99,15 +146,10 @@ fn solid(rng: &mut Pcg64, size: usize, hostile: bool, outer: DAffine3, materials
     let mut make = |rng: &mut Pcg64| {
         let (shape, map) = if hostile { hostile_leaf(rng) } else { friendly_leaf(rng) };
         *materials += 1;
-        CsgLeaf { shape, world_from_object: outer * map, material: MaterialIndex(*materials - 1), ..leaf_defaults() }
+        CsgLeaf { shape, world_from_object: outer * map, material: MaterialIndex(*materials - 1) }
     };
     let tree = tree(rng, &mut leaves, size, &mut make);
     Solid { tree, leaves }
-}
-
-/// The fields that these scenes leave alone.
-fn leaf_defaults() -> CsgLeaf {
-    CsgLeaf { shape: Shape::HalfSpace, world_from_object: DAffine3::IDENTITY, material: MaterialIndex(0) }
 }
 
 pub fn case(seed: u64, rng: &mut Pcg64) -> Case {
@@ -116,13 +158,15 @@ pub fn case(seed: u64, rng: &mut Pcg64) -> Case {
     let mut geometry = SceneGeometry::default();
     let mut scales = Vec::new();
     let small = [1, 2, 3, 5, 8, 13, 25, 40];
-    let hostile = match seed % 4 {
+    // Crowds cost as much as all others together when they are one in sixteen.
+    let family = if seed % 16 == 3 { 3 } else { seed % 3 };
+    let hostile = match family {
         0 | 1 => {
             let scale = if rng.random() { 1.0 } else { [1e-9, 1e-3, 0.1, 37.0, 1e7][rng.random_range(0..5)] };
             let size = small[rng.random_range(0..small.len())];
-            geometry.solids.push(solid(rng, size, seed % 4 == 1, scaled(scale), &mut materials));
+            geometry.solids.push(solid(rng, size, family == 1, scaled(scale), &mut materials));
             scales.push(scale);
-            seed % 4 == 1
+            family == 1
         }
         2 => {
             let hostile = rng.random();

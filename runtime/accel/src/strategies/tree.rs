@@ -84,7 +84,7 @@ impl BoxTree {
         let mut i = 0;
         while let Some(node) = self.nodes.get(i as usize) {
             let (enter, exit) = slab(&node.bounds, line.ray.origin, line.inverse_dir);
-            let within = (enter.max(low), exit.min(high));
+            let within = (earlier(enter).max(low), (-earlier(-exit)).min(high));
             let mut along = if within.0 <= within.1 {
                 match node.kind {
                     Kind::Operator(op) => {
@@ -116,6 +116,14 @@ impl BoxTree {
             }
         }
     }
+}
+
+/// Before `t` by more than the roundings of a crossing there: boxes of unbounded solids are met far away in terms of their
+/// padding.
+#[inline]
+fn earlier(t: f64) -> f64 {
+    const ROUNDING: f64 = 1.0 / (1u64 << 44) as f64;
+    t * if t > 0.0 { 1.0 - ROUNDING } else { 1.0 + ROUNDING }
 }
 
 /// What is known of a node's value between two points of a ray.
