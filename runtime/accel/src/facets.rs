@@ -1,34 +1,44 @@
-//! Triangles of mesh operands that are boundary of their solid by themselves, and cells for the others.
+//! Triangles of mesh operands as Embree's own.
 //!
 //! Wherever all other leaves of a solid are constant near a triangle, the expression is the mesh or its complement there (or
-//! constant: then the triangle is not on the boundary). Such triangles are given to Embree natively, as those of plain
-//! meshes are, and a ray that meets one has met the solid: no parity is needed. The few where something else comes near get
-//! a cell each, the size of the triangle, which counts crossings as all cells do.
+//! constant: then the triangle is not on the boundary and goes). A ray that meets such a triangle has met the solid: no
+//! parity is needed. The few triangles where something else comes near have a cell: what the expression is in their box. A
+//! ray that meets one of these asks the cell, which counts crossings as all cells do, about the place alone.
 //!
 //! Meshes are walked down their own hierarchies, so that most triangles are decided many at a time.
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
 use arsc_geometry::{Aabb, ClosedMesh, Placed, Projection, Shape};
 use glam::DVec3;
+use smallvec::SmallVec;
 
 use crate::Budget;
-use crate::cells::{CellSet, PAD, essential, leaves_of, state};
+use crate::cells::{Cell, CellSet, Line, PAD, Window, essential, leaves_of, state};
 use crate::expression::{Expression, Token, Word, substitute};
 use crate::level::Solids;
-use crate::query::Query;
+use crate::query::{Mode, Query};
 use crate::solid::SolidModel;
 use crate::transition::Transition;
 
-/// A triangle that is boundary throughout.
+/// A triangle of a mesh leaf, on the boundary of the solid in some place at least.
 #[derive(Clone, Copy, Debug)]
 pub struct Facet {
     /// In the level.
     solid: u32,
     leaf: u32,
     triangle: u32,
-    /// The mesh is subtracted here.
-    flipped: bool,
+    part: Part,
+}
+
+/// How much of a facet is boundary.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    /// All of it; the mesh may be subtracted there.
+    Whole { flipped: bool },
+    /// What the cell says.
+    Cell(u32),
 }
 
 /// The mesh that a leaf is made of.
@@ -39,52 +49,55 @@ pub fn mesh_of(leaf: &Placed) -> Option<&ClosedMesh> {
     }
 }
 
-/// Covers the surfaces of all mesh leaves of a solid: by facets, and by cells in `set`.
+/// What is known below a node of a mesh's hierarchy.
+#[derive(Clone)]
+struct Below {
+    tokens: Rc<[Token]>,
+    /// Over budget: one cell for all.
+    cell: Option<u32>,
+}
+
+/// The facets of all mesh leaves of a solid, with their cells in `set`.
 pub fn append(facets: &mut Vec<Facet>, set: &mut CellSet, number: u32, solid: &SolidModel, budget: &Budget) {
     let Expression::Tokens(tokens) = &solid.expression else { return };
-    let tokens: Rc<[Token]> = tokens.as_slice().into();
-    let mut cells_left = budget.cells;
+    let first = set.cells.len();
+    let set = RefCell::new(set);
     for (leaf, placed) in (0..).zip(&solid.leaves) {
         let Some(mesh) = mesh_of(placed) else { continue };
         let map = placed.world_from_object();
         let near = Near { solid, leaf };
-        let cells = std::cell::RefCell::new((&mut *set, &mut cells_left));
         let push = |bounds: &Aabb, tokens: &[Token]| {
-            let (set, cells_left) = &mut *cells.borrow_mut();
-            set.push(number, bounds.dilated(solid.tolerance), &leaves_of(tokens), tokens, &solid.leaves);
-            **cells_left = cells_left.saturating_sub(1);
+            let bounds = bounds.dilated(solid.tolerance);
+            set.borrow_mut().push(number, bounds, &leaves_of(tokens), tokens, &solid.leaves)
         };
-        mesh.descend(
-            tokens.clone(),
-            |tokens, bounds| {
-                if near.single(tokens).is_some() {
-                    return Some(tokens.clone());
+        let is_spent = || set.borrow().cells.len() - first >= budget.cells;
+        let is_settled = |below: &Below| below.cell.is_some() || near.single(&below.tokens).is_some();
+        let node = |above: &Below, bounds: Aabb| {
+            if is_settled(above) {
+                return Some(above.clone());
+            }
+            let bounds = bounds.transformed(map);
+            let tokens = near.narrowed(&above.tokens, &bounds)?;
+            let cell = (is_spent() && near.single(&tokens).is_none()).then(|| push(&bounds, &tokens));
+            Some(Below { tokens, cell })
+        };
+        let triangle = |below: &Below, triangle: u32| {
+            let mut tokens = below.tokens.clone();
+            let bounds = hull(mesh.mesh().corners(triangle as usize).map(|p| map.transform_point3(p)));
+            if !is_settled(below) {
+                match near.narrowed(&tokens, &bounds) {
+                    Some(narrowed) => tokens = narrowed,
+                    None => return,
                 }
-                let bounds = bounds.transformed(map);
-                let narrowed = near.narrowed(tokens, &bounds)?;
-                if *cells.borrow().1 == 0 && near.single(&narrowed).is_none() {
-                    // Over budget: all of it in one cell.
-                    push(&bounds, &narrowed);
-                    return None;
-                }
-                Some(narrowed)
-            },
-            |tokens, triangle| {
-                let mut tokens = tokens.clone();
-                let corners = mesh.mesh().corners(triangle as usize).map(|p| map.transform_point3(p));
-                let bounds = hull(corners);
-                if near.single(&tokens).is_none() {
-                    match near.narrowed(&tokens, &bounds) {
-                        Some(narrowed) => tokens = narrowed,
-                        None => return,
-                    }
-                }
-                match near.single(&tokens) {
-                    Some(flipped) => facets.push(Facet { solid: number, leaf, triangle, flipped }),
-                    None => push(&bounds, &tokens),
-                }
-            },
-        );
+            }
+            let part = match (near.single(&tokens), below.cell) {
+                (Some(flipped), _) => Part::Whole { flipped },
+                (None, Some(cell)) => Part::Cell(cell),
+                (None, None) => Part::Cell(push(&bounds, &tokens)),
+            };
+            facets.push(Facet { solid: number, leaf, triangle, part });
+        };
+        mesh.descend(Below { tokens: tokens.as_slice().into(), cell: None }, node, triangle);
     }
 }
 
@@ -140,7 +153,7 @@ impl Facet {
 
     /// Meets the facet: exactly where the crossings of the whole mesh have it.
     #[inline]
-    pub fn visit(&self, solids: &Solids, query: &mut Query) {
+    pub fn visit(&self, solids: &Solids, set: &CellSet, query: &mut Query) {
         if solids.is_left_out(self.solid, query) {
             return;
         }
@@ -151,14 +164,31 @@ impl Facet {
         let map = placed.object_from_world();
         let line = Projection::new(map.transform_point3(ray.origin), map.transform_vector3(ray.dir));
         let Some((t, enters)) = mesh.crossing(&line, self.triangle) else { return };
-        let transition = Transition {
-            t,
-            leaf: self.leaf,
-            face: self.triangle,
-            entering: enters != self.flipped,
-            flipped: self.flipped,
-            shared: false,
+        let flipped = match self.part {
+            Part::Whole { flipped } => flipped,
+            Part::Cell(cell) => return self.visit_cell(solids, set, &set.cells[cell as usize], t, query),
         };
+        let (leaf, face, entering) = (self.leaf, self.triangle, enters != flipped);
+        let transition = Transition { t, leaf, face, entering, flipped, shared: false };
         query.offer(solids.candidate(self.solid, transition, &ray, &view));
+    }
+
+    /// Asks the cell about what happens at `t`.
+    fn visit_cell(&self, solids: &Solids, set: &CellSet, cell: &Cell, t: f64, query: &mut Query) {
+        let (ray, view) = (solids.near_ray(self.solid, query), query.view);
+        let tolerance = solids.tolerance(self.solid);
+        // The cluster of coincident crossings that this one is in begins at most a tolerance before.
+        let (low, high) = ((t - 1.5 * tolerance).max(ray.start), (t + 0.5 * tolerance).min(ray.end));
+        if low > high {
+            return;
+        }
+        let window = Window { low, high, start: ray.start, tolerance };
+        let line = Line::new(&solids.models[self.solid as usize], self.solid, &ray, &view);
+        let all = query.mode == Mode::Collect;
+        let mut found: SmallVec<[Transition; 4]> = SmallVec::new();
+        set.transitions(cell, &line, &window, &mut query.scratch, all, |transition| found.push(transition));
+        for transition in found {
+            query.offer(solids.candidate(self.solid, transition, &ray, &view));
+        }
     }
 }

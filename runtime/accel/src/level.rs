@@ -141,8 +141,10 @@ impl Level {
     /// Meets a facet that Embree's traversal has come to.
     #[inline]
     pub fn visit_facet(&self, facet: u32, query: &mut Query) {
-        if !query.probing {
-            self.facets()[facet as usize].visit(&self.solids, query);
+        if let Tracer::Local(local) = &self.tracer
+            && !query.probing
+        {
+            local.facets[facet as usize].visit(&self.solids, &local.facet_cells, query);
         }
     }
 

@@ -24,8 +24,9 @@ pub struct Local {
     cells: CellSet,
     /// Primitives after the cells.
     pub members: Members,
-    /// Native triangles.
+    /// Native triangles, with their cells.
     pub facets: Vec<Facet>,
+    pub facet_cells: CellSet,
     outer: CellSet,
     open: Vec<Open>,
 }
@@ -38,7 +39,7 @@ impl Local {
             if !core.is_empty() && !Extent::admits(&core) {
                 local.open.push(Open::Whole { solid: number });
             } else if solid.leaves.iter().any(|leaf| mesh_of(leaf).is_some()) || !local.members.admit(number, solid) {
-                facets::append(&mut local.facets, &mut local.cells, number, solid, &share);
+                facets::append(&mut local.facets, &mut local.facet_cells, number, solid, &share);
                 cells::append_solid(&mut local.cells, number, solid, &share);
                 if let Some((cell, core)) = cells::append_outer(&mut local.outer, number, solid) {
                     local.open.push(Open::Outer { cell, core });
@@ -111,8 +112,16 @@ impl SolidTracer for Local {
         }
     }
 
+    fn cell_count(&self) -> usize {
+        self.primitive_count() + self.facet_cells.cells.len()
+    }
+
     fn bytes(&self) -> usize {
-        self.cells.bytes() + self.members.bytes() + self.outer.bytes() + size_of_val(&self.facets[..])
+        self.cells.bytes()
+            + self.members.bytes()
+            + self.outer.bytes()
+            + self.facet_cells.bytes()
+            + size_of_val(&self.facets[..])
     }
 
     fn visit_open(&self, solids: &Solids, query: &mut Query) {
