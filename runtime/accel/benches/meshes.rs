@@ -163,12 +163,27 @@ fn main() {
     if !std::env::args().any(|argument| argument == "--bench") {
         return;
     }
+    // `-- plain`, `-- spheres` or `-- torus` measure that alone.
+    let wanted = |name: &str| {
+        let mut names = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).peekable();
+        names.peek().is_none() || names.any(|argument| argument == name)
+    };
+    if wanted("plain") {
+        all_plain();
+    }
+    let aside = DAffine3::from_translation(DVec3::new(0.5, -0.6, 0.3));
+    let all = &[Strategy::Local, Strategy::Tree][..if std::env::var_os("LOCAL").is_some() { 1 } else { 2 }];
+    if wanted("spheres") {
+        boolean("spheres", &meshes::sphere(50, 100, 1.0), &meshes::sphere(50, 100, 0.8), aside, all);
+    }
+    if wanted("torus") {
+        let torus = meshes::torus(300, 150, 0.8, 0.35);
+        boolean("torus less sphere", &torus, &meshes::sphere(190, 190, 0.7), aside, all);
+    }
+}
+
+fn all_plain() {
     plain("sphere", &meshes::sphere(100, 200, 1.0));
     plain("torus", &meshes::torus(600, 300, 0.8, 0.35));
     plain("large torus", &meshes::torus(2000, 1000, 0.8, 0.35));
-    let aside = DAffine3::from_translation(DVec3::new(0.5, -0.6, 0.3));
-    let all = [Strategy::Local, Strategy::Tree];
-    boolean("spheres", &meshes::sphere(50, 100, 1.0), &meshes::sphere(50, 100, 0.8), aside, &all);
-    let torus = meshes::torus(300, 150, 0.8, 0.35);
-    boolean("torus less sphere", &torus, &meshes::sphere(190, 190, 0.7), aside, &all);
 }

@@ -142,21 +142,26 @@ impl Bvh {
     #[inline]
     pub fn visit(&self, node: impl Fn(&Node) -> bool, mut triangle: impl FnMut(u32) -> bool) -> bool {
         let mut stack: SmallVec<[u32; 64]> = SmallVec::new();
-        stack.push(0);
-        while let Some(at) = stack.pop() {
+        let mut next = node(self.root()).then_some(0);
+        while let Some(at) = next {
             let at = &self.nodes[at as usize];
-            if !node(at) {
-                continue;
-            }
             if at.count == 0 {
-                stack.extend([at.first + 1, at.first]);
-                continue;
-            }
-            for &i in &self.order[at.first as usize..][..at.count as usize] {
-                if !triangle(i) {
-                    return false;
+                let [low, high] = [at.first, at.first + 1].map(|child| node(&self.nodes[child as usize]));
+                if low && high {
+                    stack.push(at.first + 1);
+                }
+                if low || high {
+                    next = Some(at.first + u32::from(!low));
+                    continue;
+                }
+            } else {
+                for &i in &self.order[at.first as usize..][..at.count as usize] {
+                    if !triangle(i) {
+                        return false;
+                    }
                 }
             }
+            next = stack.pop();
         }
         true
     }

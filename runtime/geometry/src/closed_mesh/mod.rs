@@ -202,12 +202,20 @@ impl ClosedMesh {
         Crossings::sorted(&mut found)
     }
 
-    fn visit_crossings(&self, origin: DVec3, dir: DVec3, mut visit: impl FnMut(f64, u32)) {
+    fn visit_crossings(&self, origin: DVec3, dir: DVec3, visit: impl FnMut(f64, u32)) {
         let line = Projection::new(origin, dir);
+        match line.major() {
+            0 => self.visit_along::<0>(&line, visit),
+            1 => self.visit_along::<1>(&line, visit),
+            _ => self.visit_along::<2>(&line, visit),
+        }
+    }
+
+    fn visit_along<const MAJOR: usize>(&self, line: &Projection, mut visit: impl FnMut(f64, u32)) {
         self.bvh.visit(
-            |node| line.meets_box(node.min, node.max),
+            |node| line.meets_box::<MAJOR>(node.min, node.max),
             |triangle| {
-                if let Some((t, _)) = self.crossing(&line, triangle) {
+                if let Some((t, _)) = self.crossing_along::<MAJOR>(line, triangle) {
                     visit(t, triangle);
                 }
                 true
@@ -218,8 +226,17 @@ impl ClosedMesh {
     /// Where the line passes through a triangle, and whether it goes in there.
     #[inline]
     pub fn crossing(&self, line: &Projection, triangle: u32) -> Option<(f64, bool)> {
+        match line.major() {
+            0 => self.crossing_along::<0>(line, triangle),
+            1 => self.crossing_along::<1>(line, triangle),
+            _ => self.crossing_along::<2>(line, triangle),
+        }
+    }
+
+    #[inline]
+    fn crossing_along<const MAJOR: usize>(&self, line: &Projection, triangle: u32) -> Option<(f64, bool)> {
         let corners = self.mesh.triangles[triangle as usize];
-        let [a, b, c] = corners.map(|i| line.project(self.mesh.positions[i as usize].map(f64::from)));
+        let [a, b, c] = corners.map(|i| line.project::<MAJOR>(self.mesh.positions[i as usize]));
         crossing(line, a, b, c)
     }
 

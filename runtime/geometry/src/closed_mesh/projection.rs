@@ -46,22 +46,33 @@ impl Projection {
         Projection { origin: origin.to_array(), axes, shear, inverse: 1.0 / d[major] }
     }
 
+    /// The axis of the largest component of the direction.
+    pub fn major(&self) -> usize {
+        self.axes[2]
+    }
+
+    /// `MAJOR` is [`Projection::major`].
     #[inline]
-    pub fn project(&self, p: [f64; 3]) -> Projected {
-        let [x, y, z] = self.axes.map(|axis| p[axis] - self.origin[axis]);
+    pub fn project<const MAJOR: usize>(&self, p: [f32; 3]) -> Projected {
+        let axes = [(MAJOR + 1) % 3, (MAJOR + 2) % 3, MAJOR];
+        let [x, y, z] = axes.map(|axis| f64::from(p[axis]) - self.origin[axis]);
         Projected { x: x - self.shear[0] * z, y: y - self.shear[1] * z, t: z * self.inverse }
     }
 
     /// Whether the line may pass through a triangle with corners in this box. Rounding is monotone, and the bounds go
-    /// through the same operations as the vertices: none that [`crossing`] counts is ever turned down.
+    /// through the same operations as the vertices: none that [`crossing`] counts is ever turned down. `MAJOR` is
+    /// [`Projection::major`].
     #[inline]
-    pub fn meets_box(&self, min: [f32; 3], max: [f32; 3]) -> bool {
-        let low = self.axes.map(|axis| f64::from(min[axis]) - self.origin[axis]);
-        let high = self.axes.map(|axis| f64::from(max[axis]) - self.origin[axis]);
-        (0..2).all(|i| {
+    pub fn meets_box<const MAJOR: usize>(&self, min: [f32; 3], max: [f32; 3]) -> bool {
+        let axes = [(MAJOR + 1) % 3, (MAJOR + 2) % 3, MAJOR];
+        let low = axes.map(|axis| f64::from(min[axis]) - self.origin[axis]);
+        let high = axes.map(|axis| f64::from(max[axis]) - self.origin[axis]);
+        let meets = |i: usize| {
             let (a, b) = (self.shear[i] * low[2], self.shear[i] * high[2]);
-            low[i] - a.max(b) <= 0.0 && high[i] - a.min(b) >= 0.0
-        })
+            let (least, most) = if a < b { (a, b) } else { (b, a) };
+            (low[i] - most <= 0.0) & (high[i] - least >= 0.0)
+        };
+        meets(0) & meets(1)
     }
 }
 
