@@ -1,5 +1,6 @@
 //! White furnaces: in a constant environment of radiance 1, whatever absorbs nothing vanishes.
 
+use arsc_render::bsdf::{MicrofacetShape, Microfacets};
 use arsc_render::{Bsdf, Environment, Material};
 use arsc_spectral::Spectrum;
 use glam::DVec3;
@@ -49,6 +50,48 @@ fn a_rough_sphere_gains_nothing() {
         let Estimate { mean, standard_error } = furnace(Bsdf::oren_nayar(&constant(1.0), sigma), 16);
         assert!(mean < 1.0 + 5.0 * standard_error && mean > 0.7, "sigma {sigma}: {mean}");
     }
+}
+
+fn facets(alpha: f64) -> Microfacets {
+    Microfacets::new(MicrofacetShape::Ggx, [alpha; 2])
+}
+
+/// Rough glass loses what meets a second facet, and gains nothing; as it becomes smooth, it loses nothing either. The
+/// dispersive case has a density of its own for every wavelength.
+#[test]
+fn a_rough_glass_sphere_gains_nothing() {
+    let dispersive = Spectrum::Cauchy { a: 1.5, b_um2: 0.02, c_um4: 0.0 };
+    for (alpha, ior, least) in [(0.02, constant(1.5), 0.985), (0.3, constant(1.5), 0.7), (0.3, dispersive, 0.7)] {
+        let Estimate { mean, standard_error } = furnace(Bsdf::rough_dielectric(&ior, facets(alpha)), 64);
+        assert!(mean < 1.0 + 5.0 * standard_error && mean > least, "alpha {alpha}: {mean} +- {standard_error}");
+    }
+}
+
+/// Panes pass what they do not reflect.
+#[test]
+fn a_sphere_of_thin_glass_vanishes() {
+    furnace(Bsdf::thin_dielectric(&Spectrum::Cauchy { a: 1.5, b_um2: 0.02, c_um4: 0.0 }), 64).assert_is(1.0, 5e-4);
+}
+
+/// Rough metal lit by light sampling and by scattered rays at once, against scattered rays alone: the sphere reflects a
+/// bright and a dark half of the sky, once as an environment and once as an emissive shell.
+#[test]
+fn rough_metal_is_the_same_under_any_light() {
+    let metal = || Material { bsdf: Bsdf::rough_conductor(&constant(0.2), &constant(3.0), facets(0.3)), emitter: None };
+    let camera = camera(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO, 0.3, 32);
+    let mut sky = Stage::default();
+    sky.environments.push(Environment::constant(&constant(1.0)));
+    sky.sphere(DVec3::ZERO, 1.0, metal());
+    let mut shell = Stage::default();
+    shell.sphere(DVec3::ZERO, 1.0, metal());
+    let light = Material {
+        bsdf: Bsdf::lambert(&constant(0.0)),
+        emitter: Some(arsc_render::AreaEmitter::new(&constant(1.0), true)),
+    };
+    shell.sphere(DVec3::ZERO, 20.0, light);
+    let [a, b] = [sky, shell].map(|stage| estimate(&render(&stage.build(), &camera, 64, 8)));
+    let error = (a.standard_error.powi(2) + b.standard_error.powi(2)).sqrt();
+    assert!((a.mean - b.mean).abs() < 5.0 * error && error < 2e-3, "{a:?}, {b:?}");
 }
 
 /// A closed cavity that emits 1 and reflects 0.6 everywhere: radiance 1 / (1 - 0.6), after any number of reflections.

@@ -27,7 +27,7 @@ pub use action::{Action, Exposure, Strategy};
 pub use builder::Builder;
 pub use camera::{Camera, Filter, Projection};
 pub use light::{Environment, Light};
-pub use material::{Attributes, Bsdf, CutRule, Emitter, Material, MaterialId};
+pub use material::{Attributes, Bsdf, CutRule, Distribution, Emitter, Facets, Material, MaterialId};
 pub use medium::{Density, Medium, PhaseFunction};
 pub use node::{Leaf, Node, NodeId, NodeKind, Precedence, Surface};
 pub use read::{Meshes, ReadError, read, read_with};

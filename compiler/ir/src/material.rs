@@ -6,6 +6,34 @@ use arsc_spectral::Spectrum;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MaterialId(pub u32);
 
+/// The function that the normals of microfacets follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Distribution {
+    Ggx,
+    Beckmann,
+    Blinn,
+}
+
+impl Distribution {
+    pub const ALL: [Distribution; 3] = [Distribution::Ggx, Distribution::Beckmann, Distribution::Blinn];
+
+    pub const fn name(self) -> &'static str {
+        match self {
+            Distribution::Ggx => "ggx",
+            Distribution::Beckmann => "beckmann",
+            Distribution::Blinn => "blinn",
+        }
+    }
+}
+
+/// Roughness of a surface of microfacets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facets {
+    pub distribution: Distribution,
+    /// Along and across the direction of growing u. Blinn's exponent is 2 / alpha^2 - 2, by the first.
+    pub alpha: [f64; 2],
+}
+
 /// Scattering at a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Bsdf {
@@ -32,6 +60,38 @@ pub enum Bsdf {
     },
     /// No interface: light goes straight on, into whatever fills the solid.
     Inert,
+    /// A pane: both interfaces at once, nothing is bent.
+    ThinDielectric {
+        ior: Spectrum,
+    },
+    /// cos^exponent about the mirrored direction.
+    Phong {
+        reflectance: Spectrum,
+        exponent: f64,
+    },
+    RoughConductor {
+        eta: Spectrum,
+        k: Spectrum,
+        facets: Facets,
+    },
+    /// Between vacuum outside and this index inside.
+    RoughDielectric {
+        ior: Spectrum,
+        facets: Facets,
+    },
+    /// Lets the field along its axis through. The axis is at `angle` from the direction of growing u, radians.
+    Polariser {
+        transmittance: Spectrum,
+        angle: f64,
+    },
+    /// Delays the field across its fast axis by `retardance`, radians.
+    Retarder {
+        retardance: f64,
+        angle: f64,
+    },
+    Depolariser {
+        transmittance: Spectrum,
+    },
 }
 
 /// Emission of a surface towards the side of its normal (solids: outwards), Lambertian.
@@ -78,11 +138,17 @@ pub struct Material {
 impl Bsdf {
     /// Light passes through a closed wall of it, so that it matters what fills the solid.
     pub fn is_transmissive(&self) -> bool {
-        matches!(self, Bsdf::Dielectric { .. } | Bsdf::Inert)
+        match self {
+            Bsdf::Dielectric { .. } | Bsdf::RoughDielectric { .. } | Bsdf::Inert => true,
+            Bsdf::ThinDielectric { .. } | Bsdf::Polariser { .. } | Bsdf::Retarder { .. } | Bsdf::Depolariser { .. } => {
+                true
+            }
+            _ => false,
+        }
     }
 
     /// It is an interface between two indices of refraction.
     pub fn has_index(&self) -> bool {
-        matches!(self, Bsdf::Dielectric { .. })
+        matches!(self, Bsdf::Dielectric { .. } | Bsdf::RoughDielectric { .. })
     }
 }

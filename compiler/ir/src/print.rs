@@ -26,8 +26,8 @@ use arsc_spectral::Spectrum;
 use crate::shape_text::open_shape;
 use crate::write::{Call, Float, Floats};
 use crate::{
-    Action, Attributes, Bsdf, Camera, CutRule, Density, Emitter, Environment, Exposure, Filter, Ir, Leaf, Light,
-    Material, Medium, NodeId, NodeKind, PhaseFunction, Precedence, Projection, Surface,
+    Action, Attributes, Bsdf, Camera, CutRule, Density, Emitter, Environment, Exposure, Facets, Filter, Ir, Leaf,
+    Light, Material, Medium, NodeId, NodeKind, PhaseFunction, Precedence, Projection, Surface,
 };
 
 impl Display for Ir {
@@ -132,8 +132,31 @@ impl Display for Text<'_, Bsdf> {
             Bsdf::Dielectric { ior } => Call::new(f, "dielectric")?.arg("ior", Text(ior))?.end(),
             Bsdf::Conductor { eta, k } => Call::new(f, "conductor")?.arg("eta", Text(eta))?.arg("k", Text(k))?.end(),
             Bsdf::Inert => Call::new(f, "inert")?.end(),
+            Bsdf::ThinDielectric { ior } => Call::new(f, "thin_dielectric")?.arg("ior", Text(ior))?.end(),
+            Bsdf::Phong { reflectance, exponent } => {
+                Call::new(f, "phong")?.arg("reflectance", Text(reflectance))?.float("exponent", *exponent)?.end()
+            }
+            Bsdf::RoughConductor { eta, k, facets } => {
+                facets_of(Call::new(f, "rough_conductor")?.arg("eta", Text(eta))?.arg("k", Text(k))?, facets)?.end()
+            }
+            Bsdf::RoughDielectric { ior, facets } => {
+                facets_of(Call::new(f, "rough_dielectric")?.arg("ior", Text(ior))?, facets)?.end()
+            }
+            Bsdf::Polariser { transmittance, angle } => {
+                Call::new(f, "polariser")?.arg("transmittance", Text(transmittance))?.float("angle", *angle)?.end()
+            }
+            Bsdf::Retarder { retardance, angle } => {
+                Call::new(f, "retarder")?.float("retardance", *retardance)?.float("angle", *angle)?.end()
+            }
+            Bsdf::Depolariser { transmittance } => {
+                Call::new(f, "depolariser")?.arg("transmittance", Text(transmittance))?.end()
+            }
         }
     }
+}
+
+fn facets_of<'a, 'b>(call: Call<'a, 'b>, facets: &Facets) -> Result<Call<'a, 'b>, fmt::Error> {
+    call.arg("distribution", facets.distribution.name())?.arg("alpha", Floats(&facets.alpha))
 }
 
 impl Display for Text<'_, Emitter> {

@@ -14,9 +14,9 @@ use crate::args::{Args, float, float_list, floats, index, integer};
 use crate::shape_text::shape;
 use crate::term::{Cursor, Fault, Term, TermKind};
 use crate::{
-    Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Density, Emitter, Environment, Exposure, Filter, Ir, Leaf,
-    Light, Material, MaterialId, Medium, Node, NodeId, NodeKind, PhaseFunction, Precedence, Projection, Strategy,
-    Surface,
+    Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Density, Distribution, Emitter, Environment, Exposure, Facets,
+    Filter, Ir, Leaf, Light, Material, MaterialId, Medium, Node, NodeId, NodeKind, PhaseFunction, Precedence,
+    Projection, Strategy, Surface,
 };
 
 /// Why a text is no IR; one-based position, the column counted in characters.
@@ -199,10 +199,30 @@ fn bsdf(term: Term) -> Result<Bsdf, Fault> {
         "dielectric" => Bsdf::Dielectric { ior: spectrum(args.take("ior")?)? },
         "conductor" => Bsdf::Conductor { eta: spectrum(args.take("eta")?)?, k: spectrum(args.take("k")?)? },
         "inert" => Bsdf::Inert,
+        "thin_dielectric" => Bsdf::ThinDielectric { ior: spectrum(args.take("ior")?)? },
+        "phong" => Bsdf::Phong { reflectance: spectrum(args.take("reflectance")?)?, exponent: args.float("exponent")? },
+        "rough_conductor" => {
+            let (eta, k) = (spectrum(args.take("eta")?)?, spectrum(args.take("k")?)?);
+            Bsdf::RoughConductor { eta, k, facets: facets(&mut args)? }
+        }
+        "rough_dielectric" => Bsdf::RoughDielectric { ior: spectrum(args.take("ior")?)?, facets: facets(&mut args)? },
+        "polariser" => {
+            Bsdf::Polariser { transmittance: spectrum(args.take("transmittance")?)?, angle: args.float("angle")? }
+        }
+        "retarder" => Bsdf::Retarder { retardance: args.float("retardance")?, angle: args.float("angle")? },
+        "depolariser" => Bsdf::Depolariser { transmittance: spectrum(args.take("transmittance")?)? },
         _ => return args.unknown("bsdf"),
     };
     args.end()?;
     Ok(bsdf)
+}
+
+fn facets(args: &mut Args) -> Result<Facets, Fault> {
+    let term = args.take("distribution")?;
+    let named = |name: &str| Distribution::ALL.into_iter().find(|distribution| distribution.name() == name);
+    let TermKind::Word(name) = term.kind else { return Err((term.offset, "expected a distribution".to_owned())) };
+    let distribution = named(name).ok_or_else(|| (term.offset, format!("`{name}` is no distribution")))?;
+    Ok(Facets { distribution, alpha: floats(&args.take("alpha")?)? })
 }
 
 fn emitter(term: Term) -> Result<Emitter, Fault> {
@@ -599,6 +619,15 @@ mod tests {
                     b.medium(Medium { absorption, scattering, emission: tables.0.clone(), phase, density });
                 }
                 b.bsdf(Bsdf::Inert);
+                let distribution = Distribution::ALL[numbers[1] as usize % 3];
+                let facets = Facets { distribution, alpha: [0.1, 0.7] };
+                b.bsdf(Bsdf::RoughConductor { eta: tables.1.clone(), k: tables.0.clone(), facets });
+                b.bsdf(Bsdf::RoughDielectric { ior: tables.1.clone(), facets });
+                b.bsdf(Bsdf::ThinDielectric { ior: tables.0.clone() });
+                b.bsdf(Bsdf::Phong { reflectance: tables.1.clone(), exponent: tables.2 });
+                b.bsdf(Bsdf::Polariser { transmittance: tables.0.clone(), angle: tables.2 });
+                b.bsdf(Bsdf::Retarder { retardance: tables.2, angle: -0.5 });
+                b.bsdf(Bsdf::Depolariser { transmittance: tables.0.clone() });
                 b.emitter(Emitter { radiance: tables.1, two_sided: numbers[0] % 2 == 0 });
                 for (i, recipe) in recipes.into_iter().enumerate() {
                     let origin = Span { source: SourceId(i as u32), start: numbers[1] / 2, end: u32::MAX };

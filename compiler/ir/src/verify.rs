@@ -9,8 +9,8 @@ use arsc_geometry::{DVec3, invert};
 use arsc_spectral::Spectrum;
 
 use crate::{
-    Attributes, Bsdf, Camera, CutRule, Density, Environment, Ir, Leaf, Light, MaterialId, Medium, NodeId, NodeKind,
-    PhaseFunction, Projection, Surface,
+    Attributes, Bsdf, Camera, CutRule, Density, Environment, Facets, Ir, Leaf, Light, MaterialId, Medium, NodeId,
+    NodeKind, PhaseFunction, Projection, Surface,
 };
 
 /// Spectra nest at most this deep, so that everybody may recurse into them.
@@ -209,6 +209,24 @@ fn check_bsdf(bsdf: &Bsdf) -> Check {
         Bsdf::Dielectric { ior } => check_spectrum(ior),
         Bsdf::Conductor { eta, k } => check_spectrum(eta).and(check_spectrum(k)),
         Bsdf::Inert => Ok(()),
+        Bsdf::ThinDielectric { ior } => check_spectrum(ior),
+        Bsdf::Phong { reflectance, exponent } => {
+            require(*exponent >= 0.0 && exponent.is_finite(), "an exponent is negative or not finite")?;
+            check_spectrum(reflectance)
+        }
+        Bsdf::RoughConductor { eta, k, facets } => {
+            check_facets(facets)?;
+            check_spectrum(eta).and(check_spectrum(k))
+        }
+        Bsdf::RoughDielectric { ior, facets } => check_facets(facets).and(check_spectrum(ior)),
+        Bsdf::Polariser { transmittance, angle } => {
+            require(angle.is_finite(), "an angle is not finite")?;
+            check_spectrum(transmittance)
+        }
+        Bsdf::Retarder { retardance, angle } => {
+            require(retardance.is_finite() && angle.is_finite(), "an angle is not finite")
+        }
+        Bsdf::Depolariser { transmittance } => check_spectrum(transmittance),
     }
 }
 
@@ -234,6 +252,10 @@ fn check_medium(medium: &Medium) -> Check {
             require(positive(*height), "a size is not positive and finite")
         }
     }
+}
+
+fn check_facets(facets: &Facets) -> Check {
+    require(facets.alpha.iter().all(|alpha| (0.0..=1.0).contains(alpha)), "a roughness is not in 0..=1")
 }
 
 fn check_spectrum(spectrum: &Spectrum) -> Check {

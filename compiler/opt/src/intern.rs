@@ -2,7 +2,7 @@
 
 use std::hash::{Hash, Hasher};
 
-use arsc_ir::{Bsdf, Density, Emitter, Material, Medium, PhaseFunction, Spectrum};
+use arsc_ir::{Bsdf, Density, Emitter, Facets, Material, Medium, PhaseFunction, Spectrum};
 use rustc_hash::{FxHashMap, FxHasher};
 
 /// A value whose floats are compared as numbers and hashed by their bits.
@@ -97,7 +97,34 @@ impl Structural for Bsdf {
                 k.structural_hash(hasher);
             }
             Bsdf::Inert => {}
+            Bsdf::ThinDielectric { ior } => ior.structural_hash(hasher),
+            Bsdf::Phong { reflectance, exponent } => {
+                reflectance.structural_hash(hasher);
+                hash_f64(*exponent, hasher);
+            }
+            Bsdf::RoughConductor { eta, k, facets } => {
+                eta.structural_hash(hasher);
+                k.structural_hash(hasher);
+                facets.structural_hash(hasher);
+            }
+            Bsdf::RoughDielectric { ior, facets } => {
+                ior.structural_hash(hasher);
+                facets.structural_hash(hasher);
+            }
+            Bsdf::Polariser { transmittance, angle } => {
+                transmittance.structural_hash(hasher);
+                hash_f64(*angle, hasher);
+            }
+            Bsdf::Retarder { retardance, angle } => hash_all(&[*retardance, *angle], hasher),
+            Bsdf::Depolariser { transmittance } => transmittance.structural_hash(hasher),
         }
+    }
+}
+
+impl Structural for Facets {
+    fn structural_hash(&self, hasher: &mut FxHasher) {
+        self.distribution.hash(hasher);
+        hash_all(&self.alpha, hasher);
     }
 }
 

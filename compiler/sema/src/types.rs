@@ -60,6 +60,8 @@ pub enum Type {
     Action,
     Exposure,
     Strategy,
+    /// Of the normals of microfacets.
+    Distribution,
     SkyModel,
     List(Arc<Type>),
     /// The empty tuple is the value of what has none.
@@ -189,6 +191,7 @@ pub const NAMED: &[(&str, Type)] = &[
     ("action", Type::Action),
     ("exposure", Type::Exposure),
     ("strategy", Type::Strategy),
+    ("distribution", Type::Distribution),
     ("sky_model", Type::SkyModel),
 ];
 

@@ -8,7 +8,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 
 use arsc_ir::{
-    Action, ActionAt, Attributes, Camera, Density, Exposure, Filter, NodeId, PhaseFunction, Spectrum, Strategy,
+    Action, ActionAt, Attributes, Camera, Density, Distribution, Exposure, Filter, NodeId, PhaseFunction, Spectrum,
+    Strategy,
 };
 
 use crate::code::{Coercion, FnId};
@@ -42,6 +43,7 @@ pub enum Value {
     Action(Arc<ActionAt>),
     Exposure(Exposure),
     Strategy(Strategy),
+    Distribution(Distribution),
     /// A value of a type that has only one.
     Only,
 }
@@ -212,6 +214,13 @@ impl Value {
         match self {
             Value::Exposure(exposure) => *exposure,
             other => bug("an exposure", other),
+        }
+    }
+
+    pub fn as_distribution(&self) -> Distribution {
+        match self {
+            Value::Distribution(distribution) => *distribution,
+            other => bug("a distribution", other),
         }
     }
 

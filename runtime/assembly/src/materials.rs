@@ -1,6 +1,7 @@
 //! Materials of the IR → the renderer's, indexed alike.
 
 use arsc_ir::Ir;
+use arsc_render::bsdf::{MicrofacetShape, Microfacets};
 use arsc_render::{AreaEmitter, Bsdf, Material};
 
 use crate::AssemblyError;
@@ -35,6 +36,22 @@ fn lower_bsdf(bsdf: &arsc_ir::Bsdf) -> Result<Bsdf, AssemblyError> {
         arsc_ir::Bsdf::Mirror { reflectance } => Bsdf::mirror(reflectance),
         arsc_ir::Bsdf::Dielectric { ior } => Bsdf::dielectric(ior),
         arsc_ir::Bsdf::Conductor { eta, k } => Bsdf::conductor(eta, k),
+        arsc_ir::Bsdf::ThinDielectric { ior } => Bsdf::thin_dielectric(ior),
+        arsc_ir::Bsdf::Phong { reflectance, exponent } => Bsdf::phong(reflectance, *exponent),
+        arsc_ir::Bsdf::RoughConductor { eta, k, facets } => Bsdf::rough_conductor(eta, k, lower_facets(facets)),
+        arsc_ir::Bsdf::RoughDielectric { ior, facets } => Bsdf::rough_dielectric(ior, lower_facets(facets)),
+        arsc_ir::Bsdf::Polariser { transmittance, angle } => Bsdf::polariser(transmittance, *angle),
+        arsc_ir::Bsdf::Retarder { retardance, angle } => Bsdf::retarder(*retardance, *angle),
+        arsc_ir::Bsdf::Depolariser { transmittance } => Bsdf::depolariser(transmittance),
         arsc_ir::Bsdf::Inert => return Err(AssemblyError::Settings("media are not rendered yet".into())),
     })
+}
+
+fn lower_facets(facets: &arsc_ir::Facets) -> Microfacets {
+    let shape = match facets.distribution {
+        arsc_ir::Distribution::Ggx => MicrofacetShape::Ggx,
+        arsc_ir::Distribution::Beckmann => MicrofacetShape::Beckmann,
+        arsc_ir::Distribution::Blinn => MicrofacetShape::Blinn,
+    };
+    Microfacets::new(shape, facets.alpha)
 }

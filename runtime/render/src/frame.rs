@@ -24,6 +24,15 @@ impl Frame {
         }
     }
 
+    /// About a unit vector, with x as near to `tangent` as can be; any frame where that is undetermined.
+    #[inline]
+    pub fn with_tangent(z: DVec3, tangent: DVec3) -> Frame {
+        match (tangent - z * z.dot(tangent)).try_normalize() {
+            Some(x) => Frame { x, y: z.cross(x), z },
+            None => Frame::new(z),
+        }
+    }
+
     #[inline]
     pub fn to_local(&self, v: DVec3) -> DVec3 {
         DVec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))

@@ -61,10 +61,12 @@ impl Interface {
     }
 }
 
-/// The effects at four wavelengths, times a factor.
+/// The effects at the four wavelengths, given by their elements, times a factor.
 #[inline]
-pub fn gather(elements: [[f64; 4]; 4], factor: f64) -> DiattenuatingRetarder {
-    let of = |i: usize| SampledSpectrum(glam::Vec4::from_array(elements.map(|e| (e[i] * factor) as f32)));
+pub fn gather(elements: impl Fn(usize) -> [f64; 4], factor: f64) -> DiattenuatingRetarder {
+    let (p, q, r, s) = (elements(0), elements(1), elements(2), elements(3));
+    let at = |e: &[f64; 4], i: usize| (e[i] * factor) as f32;
+    let of = |i: usize| SampledSpectrum(glam::Vec4::new(at(&p, i), at(&q, i), at(&r, i), at(&s, i)));
     DiattenuatingRetarder { a: of(0), b: of(1), c: of(2), s: of(3) }
 }
 

@@ -4,8 +4,8 @@
 //! by the power heuristic with exponent 2 (Veach 1997, section 9.2). Across the four wavelengths of a path the
 //! balance heuristic holds (Wilkie et al. 2014, equation 6): `beta` is f / pdf for the hero's pdf, `path_pdf` the
 //! ratio of each wavelength's pdf of the same path to the hero's, and what arrives is divided by the mean of that
-//! ratio. All densities except the choice at a dielectric are the same at the four wavelengths, therefore the two
-//! heuristics multiply. Russian roulette ends dim paths from the [`ROULETTE_DEPTH`]th event on, on the brightest
+//! ratio. The two combine: against light sampling stands the mean density of directions over the wavelengths, weighted
+//! by their `path_pdf`. All weights of a wavelength then add up to one, whether or not densities depend on wavelength. Russian roulette ends dim paths from the [`ROULETTE_DEPTH`]th event on, on the brightest
 //! wavelength, with the change of radiance by refraction taken out.
 //!
 //! Written once for light with and without polarisation. `beta` is then a Mueller matrix from the current ray to the
@@ -101,11 +101,11 @@ pub fn incident_radiance<P: Polarisation>(
             break;
         }
         let pair = CAMERA_PAIRS + EVENT_PAIRS * depth;
-        let event = Event::new(&hit, wo, &world.material(&hit).bsdf);
+        let event = Event::new(world, &hit, wo, &world.material(&hit).bsdf);
         if !event.bsdf.is_specular() {
             let choice = sampler.single(pair + LIGHT_CHOICE);
             let u = sampler.pair(pair + LIGHT_POINT);
-            if let Some(direct) = event.sampled_light::<P>(world, choice, u, wavelengths) {
+            if let Some(direct) = event.sampled_light::<P>(world, choice, u, wavelengths, path.path_pdf) {
                 radiance += path.carry(&direct);
             }
         }
@@ -167,9 +167,14 @@ struct Event<'a> {
 impl<'a> Event<'a> {
     /// The frame is that of the shading normal, unless `wo` sees the two normals from different sides.
     #[inline]
-    fn new(hit: &'a Hit, wo: DVec3, bsdf: &'a Bsdf) -> Event<'a> {
+    fn new(world: &World, hit: &'a Hit, wo: DVec3, bsdf: &'a Bsdf) -> Event<'a> {
         let agree = wo.dot(hit.ng) * wo.dot(hit.ns) > 0.0;
-        let frame = Frame::new(if agree { hit.ns } else { hit.ng });
+        let normal = if agree { hit.ns } else { hit.ng };
+        let frame = if bsdf.needs_tangent() {
+            Frame::with_tangent(normal, world.geometry.parametrize(hit).dpdu)
+        } else {
+            Frame::new(normal)
+        };
         Event { hit, bsdf, frame, local_wo: frame.to_local(wo) }
     }
 
@@ -186,6 +191,7 @@ impl<'a> Event<'a> {
         choice: f64,
         u: [f64; 2],
         wavelengths: &SampledWavelengths,
+        path_pdf: SampledSpectrum,
     ) -> Option<P::Stokes> {
         let (source, probability, rest) = world.choose_light(choice)?;
         let (ray, light, pdf) = match source {
@@ -226,7 +232,10 @@ impl<'a> Event<'a> {
         }
         let weight = match pdf {
             None => 1.0 / probability,
-            Some(pdf) => f64::from(power_heuristic(pdf, self.bsdf.pdf(self.local_wo, local_wi))) / pdf,
+            Some(pdf) => {
+                let scattered = self.bsdf.pdf(self.local_wo, local_wi, wavelengths) * path_pdf;
+                f64::from(power_heuristic(pdf, f64::from(scattered.mean() / path_pdf.mean()))) / pdf
+            }
         };
         if !(weight > 0.0 && weight.is_finite()) || world.geometry.occluded(&ray) {
             return None;
@@ -251,8 +260,9 @@ impl<'a> Event<'a> {
             return false;
         }
         path.beta = path.beta.then(&sample.weight.to_world(&self.frame));
+        let before = path.path_pdf.mean();
         path.path_pdf *= sample.path_pdf;
-        path.direction_pdf = (!sample.specular).then_some(sample.pdf);
+        path.direction_pdf = (!sample.specular).then(|| sample.pdf * f64::from(path.path_pdf.mean() / before));
         path.eta2 *= sample.eta * sample.eta;
         path.ray = self.hit.spawn(wi);
         let intensity = path.beta.intensity();

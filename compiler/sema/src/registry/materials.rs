@@ -8,14 +8,15 @@ use crate::code::Site;
 use crate::eval::{Eval, Machine};
 use crate::types::Class;
 use crate::types::SpectrumKind::{Emission, Extinction, Reflectance, RefractiveIndex};
-use crate::types::Type::{self, Angle, Bool, Float, Solid, Spectrum, Var};
+use crate::types::Type::{self, Angle, Bool, Solid, Spectrum, Var};
 use crate::value::Value;
 
-const MATERIAL: &str = "std.material";
+pub(super) const MATERIAL: &str = "std.material";
 
 pub fn builtins() -> Vec<Builtin> {
     let mut list = attaching();
     list.extend(bsdfs());
+    list.extend(super::surface_models::builtins());
     list.extend(not_yet());
     list
 }
@@ -125,7 +126,7 @@ fn is_surface(m: &Machine<'_>, mut node: NodeId) -> bool {
     }
 }
 
-fn bsdf(m: &mut Machine<'_>, bsdf: Bsdf) -> Eval {
+pub(super) fn bsdf(m: &mut Machine<'_>, bsdf: Bsdf) -> Eval {
     let id = m.bsdf(bsdf);
     Ok(Value::Attributes(Attributes { bsdf: Some(id), ..Attributes::default() }))
 }
@@ -178,17 +179,7 @@ fn bsdfs() -> Vec<Builtin> {
 
 fn not_yet() -> Vec<Builtin> {
     let of = |name, doc| Builtin::new(name, doc).module(MATERIAL);
-    let roughness = || Param::new("roughness", Float, "GGX alpha").float(0.1).within(0.0, 1.0);
     vec![
-        of("rough_conductor", "Rough metal, GGX microfacets.")
-            .param(Param::new("eta", Spectrum(RefractiveIndex), "real part"))
-            .param(Param::new("k", Spectrum(Extinction), "imaginary part"))
-            .param(roughness())
-            .later(Type::Bsdf, "the rough metal"),
-        of("rough_dielectric", "Rough glass, GGX microfacets.")
-            .param(Param::new("ior", Spectrum(RefractiveIndex), "refractive index"))
-            .param(roughness())
-            .later(Type::Bsdf, "the rough glass"),
         of("layered", "A clear coat over a base.")
             .param(Param::new("coat", Type::Bsdf, "on top"))
             .param(Param::new("base", Type::Bsdf, "below"))

@@ -15,6 +15,7 @@ mod outlines;
 mod param;
 mod solids;
 mod spectra;
+mod surface_models;
 mod surfaces;
 mod text;
 mod transforms;
@@ -227,10 +228,16 @@ pub fn choices(ty: &Type) -> &'static [(&'static str, Value)] {
         (Strategy::Hybrid.name(), Value::Strategy(Strategy::Hybrid)),
         (Strategy::Incremental.name(), Value::Strategy(Strategy::Incremental)),
     ];
-    use arsc_ir::{Exposure, Strategy};
+    const DISTRIBUTIONS: [(&str, Value); Distribution::ALL.len()] = [
+        (Distribution::Ggx.name(), Value::Distribution(Distribution::Ggx)),
+        (Distribution::Beckmann.name(), Value::Distribution(Distribution::Beckmann)),
+        (Distribution::Blinn.name(), Value::Distribution(Distribution::Blinn)),
+    ];
+    use arsc_ir::{Distribution, Exposure, Strategy};
     match ty {
         Type::Exposure => &[("auto", Value::Exposure(Exposure::Auto))],
         Type::Strategy => &STRATEGIES,
+        Type::Distribution => &DISTRIBUTIONS,
         Type::SkyModel => &[("hosek_wilkie", Value::Only)],
         _ => &[],
     }

@@ -3,13 +3,9 @@
 use arsc_spectral::{DenseSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 
-use super::BsdfSample;
+use super::{BsdfSample, index_of_metal};
 use crate::fresnel;
 use crate::polarisation::Polarisation;
-
-/// Smallest real part of the index: keeps the equations away from 0/0.
-const MIN_ETA: f32 = 1e-3;
-const MAX_INDEX: f32 = 1e3;
 
 #[derive(Clone, Debug)]
 pub struct Conductor {
@@ -19,10 +15,8 @@ pub struct Conductor {
 
 impl Conductor {
     pub(super) fn new(eta: &Spectrum, k: &Spectrum) -> Conductor {
-        Conductor {
-            eta: DenseSpectrum::new(eta).clamped(MIN_ETA, MAX_INDEX),
-            k: DenseSpectrum::new(k).clamped(0.0, MAX_INDEX),
-        }
+        let [eta, k] = index_of_metal(eta, k);
+        Conductor { eta, k }
     }
 
     #[inline]

@@ -8,13 +8,9 @@
 use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 
-use super::BsdfSample;
+use super::{BsdfSample, index_of_glass};
 use crate::fresnel::{self, Interface};
 use crate::polarisation::{Mueller, Polarisation, s_axis};
-
-/// Limits of the index; a medium of index 1 is invisible.
-const MIN_INDEX: f32 = 1e-2;
-const MAX_INDEX: f32 = 1e2;
 
 #[derive(Clone, Debug)]
 pub struct Dielectric {
@@ -23,7 +19,7 @@ pub struct Dielectric {
 
 impl Dielectric {
     pub(super) fn new(ior: &Spectrum) -> Dielectric {
-        Dielectric { ior: DenseSpectrum::new(ior).clamped(MIN_INDEX, MAX_INDEX) }
+        Dielectric { ior: index_of_glass(ior) }
     }
 
     #[inline]
@@ -44,17 +40,20 @@ impl Dielectric {
         let reflectance = hero.reflectance();
         if u_lobe < reflectance {
             if ior.is_flat() {
-                let effect = fresnel::gather([hero.reflection(); 4], 1.0 / reflectance);
+                let reflection = hero.reflection();
+                let effect = fresnel::gather(|_| reflection, 1.0 / reflectance);
                 return Some(BsdfSample::specular_reflection(wo, &effect));
             }
-            let each = ior.0.to_array().map(|index| Interface::new(cos_o, relative(index)).reflection());
-            let effect = fresnel::gather(each, 1.0 / reflectance);
+            let index = ior.0.to_array();
+            let reflection = |lane: usize| Interface::new(cos_o, relative(index[lane])).reflection();
+            let effect = fresnel::gather(reflection, 1.0 / reflectance);
             let sample = BsdfSample::specular_reflection(wo, &effect);
             return Some(BsdfSample { path_pdf: effect.a, ..sample });
         }
         let wi = DVec3::new(-wo.x / eta, -wo.y / eta, -hero.cos_t.copysign(wo.z));
         let remaining = if ior.is_flat() { SampledSpectrum::ONE } else { SampledSpectrum::ONE.hero_only() };
-        let effect = fresnel::gather([hero.refraction(); 4], 1.0 / (1.0 - reflectance));
+        let refraction = hero.refraction();
+        let effect = fresnel::gather(|_| refraction, 1.0 / (1.0 - reflectance));
         let weight = remaining * (1.0 / (eta * eta)) as f32;
         let axis = s_axis(DVec3::Z, wo);
         let weight = P::Mueller::diattenuating_retarder(&(effect * weight), axis, wo, wi);

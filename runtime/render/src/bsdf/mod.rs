@@ -14,10 +14,16 @@
 mod conductor;
 mod dielectric;
 mod lambert;
+mod microfacets;
 mod mirror;
 mod oren_nayar;
+mod phong;
+mod rough_conductor;
+mod rough_dielectric;
+mod sheet;
+mod thin_dielectric;
 
-use arsc_spectral::{SampledSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 
 use crate::polarisation::{DiattenuatingRetarder, Mueller, Polarisation, s_axis};
@@ -25,8 +31,14 @@ use crate::polarisation::{DiattenuatingRetarder, Mueller, Polarisation, s_axis};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use lambert::Lambert;
+pub use microfacets::{MicrofacetShape, Microfacets};
 pub use mirror::Mirror;
 pub use oren_nayar::OrenNayar;
+pub use phong::Phong;
+pub use rough_conductor::RoughConductor;
+pub use rough_dielectric::RoughDielectric;
+pub use sheet::Sheet;
+pub use thin_dielectric::ThinDielectric;
 
 /// A scattering model, tabulated for rendering.
 #[derive(Clone, Debug)]
@@ -36,6 +48,11 @@ pub enum Bsdf {
     Mirror(Mirror),
     Dielectric(Dielectric),
     Conductor(Conductor),
+    ThinDielectric(ThinDielectric),
+    Phong(Phong),
+    RoughConductor(RoughConductor),
+    RoughDielectric(RoughDielectric),
+    Sheet(Sheet),
 }
 
 /// A sampled direction.
@@ -81,28 +98,93 @@ impl Bsdf {
         Bsdf::Conductor(Conductor::new(eta, k))
     }
 
+    /// A thin pane of clear glass: nothing is bent.
+    pub fn thin_dielectric(ior: &Spectrum) -> Bsdf {
+        Bsdf::ThinDielectric(ThinDielectric::new(ior))
+    }
+
+    /// A glossy lobe cos^n about the mirrored direction; `exponent` is limited to [0, 1e7].
+    pub fn phong(reflectance: &Spectrum, exponent: f64) -> Bsdf {
+        Bsdf::Phong(Phong::new(reflectance, exponent))
+    }
+
+    /// A rough metal of index `eta` + i `k`.
+    pub fn rough_conductor(eta: &Spectrum, k: &Spectrum, facets: Microfacets) -> Bsdf {
+        Bsdf::RoughConductor(RoughConductor::new(eta, k, facets))
+    }
+
+    /// A rough interface between vacuum outside and a transparent medium of index `ior` inside.
+    pub fn rough_dielectric(ior: &Spectrum, facets: Microfacets) -> Bsdf {
+        Bsdf::RoughDielectric(RoughDielectric::new(ior, facets))
+    }
+
+    /// A sheet that lets the field along its axis through, `transmittance` of its power. The axis stands at `angle`, radians,
+    /// from the direction of growing u, towards that of the normal crossed with it.
+    pub fn polariser(transmittance: &Spectrum, angle: f64) -> Bsdf {
+        Bsdf::Sheet(Sheet::polariser(transmittance, angle))
+    }
+
+    /// A sheet that delays the field across its fast axis, at `angle`, by `retardance` radians at every wavelength.
+    pub fn retarder(retardance: f64, angle: f64) -> Bsdf {
+        Bsdf::Sheet(Sheet::retarder(retardance, angle))
+    }
+
+    /// A sheet from which light comes unpolarised.
+    pub fn depolariser(transmittance: &Spectrum) -> Bsdf {
+        Bsdf::Sheet(Sheet::depolariser(transmittance))
+    }
+
     /// Every lobe is a Dirac distribution: light sampling is of no use.
     #[inline]
     pub fn is_specular(&self) -> bool {
-        matches!(self, Bsdf::Mirror(_) | Bsdf::Dielectric(_) | Bsdf::Conductor(_))
+        match self {
+            Bsdf::Lambert(_)
+            | Bsdf::OrenNayar(_)
+            | Bsdf::Phong(_)
+            | Bsdf::RoughConductor(_)
+            | Bsdf::RoughDielectric(_) => false,
+            Bsdf::Mirror(_) | Bsdf::Dielectric(_) | Bsdf::Conductor(_) | Bsdf::ThinDielectric(_) | Bsdf::Sheet(_) => {
+                true
+            }
+        }
+    }
+
+    /// The x axis of the local frame matters: it must be the direction of growing u.
+    #[inline]
+    pub fn needs_tangent(&self) -> bool {
+        match self {
+            Bsdf::RoughConductor(rough) => rough.facets.is_anisotropic(),
+            Bsdf::RoughDielectric(rough) => rough.facets.is_anisotropic(),
+            Bsdf::Sheet(sheet) => sheet.has_axis(),
+            _ => false,
+        }
     }
 
     /// The value f(wo, wi) in sr^-1 without the cosine; zero for specular lobes.
     #[inline]
     pub fn eval<P: Polarisation>(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> P::Mueller {
-        P::Mueller::depolariser(match self {
+        let depolarised = match self {
+            Bsdf::RoughConductor(rough) => return rough.eval::<P>(wo, wi, wavelengths),
+            Bsdf::RoughDielectric(rough) => return rough.eval::<P>(wo, wi, wavelengths),
             Bsdf::Lambert(lambert) => lambert.eval(wo, wi, wavelengths),
             Bsdf::OrenNayar(oren_nayar) => oren_nayar.eval(wo, wi, wavelengths),
-            Bsdf::Mirror(_) | Bsdf::Dielectric(_) | Bsdf::Conductor(_) => SampledSpectrum::ZERO,
-        })
+            Bsdf::Phong(phong) => phong.eval(wo, wi, wavelengths),
+            _ => SampledSpectrum::ZERO,
+        };
+        P::Mueller::depolariser(depolarised)
     }
 
-    /// Density per steradian with which [`Bsdf::sample`] gives `wi`; zero for specular lobes.
+    /// Density per steradian with which [`Bsdf::sample`] gives `wi`, were each of the wavelengths the hero; zero for
+    /// specular lobes.
     #[inline]
-    pub fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+    pub fn pdf(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> SampledSpectrum {
+        let same = |pdf: f64| SampledSpectrum::splat(pdf as f32);
         match self {
-            Bsdf::Lambert(_) | Bsdf::OrenNayar(_) => cosine_pdf(wo, wi),
-            Bsdf::Mirror(_) | Bsdf::Dielectric(_) | Bsdf::Conductor(_) => 0.0,
+            Bsdf::Lambert(_) | Bsdf::OrenNayar(_) => same(cosine_pdf(wo, wi)),
+            Bsdf::Phong(phong) => same(phong.pdf(wo, wi)),
+            Bsdf::RoughConductor(rough) => same(rough.pdf(wo, wi)),
+            Bsdf::RoughDielectric(rough) => rough.pdf(wo, wi, wavelengths),
+            _ => SampledSpectrum::ZERO,
         }
     }
 
@@ -121,6 +203,11 @@ impl Bsdf {
             Bsdf::Mirror(mirror) => mirror.sample(wo, wavelengths),
             Bsdf::Dielectric(dielectric) => dielectric.sample(wo, u_lobe, wavelengths),
             Bsdf::Conductor(conductor) => conductor.sample(wo, wavelengths),
+            Bsdf::ThinDielectric(pane) => pane.sample(wo, u_lobe, wavelengths),
+            Bsdf::Phong(phong) => phong.sample(wo, u, wavelengths),
+            Bsdf::RoughConductor(rough) => rough.sample(wo, u, wavelengths),
+            Bsdf::RoughDielectric(rough) => rough.sample(wo, u, u_lobe, wavelengths),
+            Bsdf::Sheet(sheet) => sheet.sample(wo, wavelengths),
         }
     }
 }
@@ -130,6 +217,20 @@ impl Default for Bsdf {
     fn default() -> Bsdf {
         Bsdf::lambert(&Spectrum::Constant(0.5))
     }
+}
+
+/// Index of a transparent medium, held to [0.01, 100]; a medium of index 1 is invisible.
+fn index_of_glass(ior: &Spectrum) -> DenseSpectrum {
+    limited_index(DenseSpectrum::new(ior))
+}
+
+fn limited_index(ior: DenseSpectrum) -> DenseSpectrum {
+    ior.clamped(1e-2, 1e2)
+}
+
+/// Real and imaginary part of the index of a metal; the real part is large enough to keep Fresnel's equations away from 0/0.
+fn index_of_metal(eta: &Spectrum, k: &Spectrum) -> [DenseSpectrum; 2] {
+    [DenseSpectrum::new(eta).clamped(1e-3, 1e3), DenseSpectrum::new(k).clamped(0.0, 1e3)]
 }
 
 /// Density of cosine sampling on the side of `wo`.
@@ -158,6 +259,12 @@ impl<P: Polarisation> BsdfSample<P> {
         let wi = DVec3::new(-wo.x, -wo.y, wo.z);
         let weight = P::Mueller::diattenuating_retarder(effect, s_axis(DVec3::Z, wo), wo, wi);
         BsdfSample { wi, weight, path_pdf: SampledSpectrum::ONE, pdf: 1.0, specular: true, eta: 1.0 }
+    }
+
+    /// Light that goes on without being bent.
+    #[inline]
+    fn straight(wo: DVec3, weight: P::Mueller) -> BsdfSample<P> {
+        BsdfSample { wi: -wo, weight, path_pdf: SampledSpectrum::ONE, pdf: 1.0, specular: true, eta: 1.0 }
     }
 
     /// A direction drawn from a density per steradian that is the same at every wavelength; what it scatters is

@@ -25,26 +25,31 @@ impl MuellerSpectrum {
     #[inline]
     fn with_incoming(&self, frame: ReferenceFrame) -> MuellerSpectrum {
         let [cos, sin] = frame.doubled_angle_to(&self.incoming);
-        let turn =
-            |row: &[SampledSpectrum; 4]| [row[0], row[1] * cos - row[2] * sin, row[1] * sin + row[2] * cos, row[3]];
-        MuellerSpectrum { m: [0, 1, 2, 3].map(|i| turn(&self.m[i])), outgoing: self.outgoing, incoming: frame }
+        let mut m = self.m;
+        for row in &mut m {
+            (row[1], row[2]) = (row[1] * cos - row[2] * sin, row[1] * sin + row[2] * cos);
+        }
+        MuellerSpectrum { m, outgoing: self.outgoing, incoming: frame }
     }
 
     /// The same effect described in another outgoing frame.
     #[inline]
     fn with_outgoing(&self, frame: ReferenceFrame) -> MuellerSpectrum {
         let [cos, sin] = self.outgoing.doubled_angle_to(&frame);
-        let [first, a, b, last] = &self.m;
-        let turn = |p: f32, q: f32| std::array::from_fn(|j| a[j] * p + b[j] * q);
-        MuellerSpectrum {
-            m: [*first, turn(cos, sin), turn(-sin, cos), *last],
-            outgoing: frame,
-            incoming: self.incoming,
+        let mut m = self.m;
+        for j in 0..4 {
+            let (a, b) = (m[1][j], m[2][j]);
+            (m[1][j], m[2][j]) = (a * cos + b * sin, b * cos - a * sin);
         }
+        MuellerSpectrum { m, outgoing: frame, incoming: self.incoming }
     }
 
-    fn map(self, f: impl Fn(SampledSpectrum) -> SampledSpectrum) -> MuellerSpectrum {
-        MuellerSpectrum { m: self.m.map(|row| row.map(&f)), ..self }
+    #[inline]
+    fn map(mut self, f: impl Fn(SampledSpectrum) -> SampledSpectrum) -> MuellerSpectrum {
+        for element in self.m.as_flattened_mut() {
+            *element = f(*element);
+        }
+        self
     }
 }
 
@@ -70,8 +75,10 @@ impl Mueller for MuellerSpectrum {
     #[inline]
     fn identity(x: DVec3, k: DVec3) -> MuellerSpectrum {
         let frame = ReferenceFrame::new(x, k);
-        let element = |i: usize, j: usize| if i == j { SampledSpectrum::ONE } else { ZERO };
-        let m = std::array::from_fn(|i| std::array::from_fn(|j| element(i, j)));
+        let mut m = [[ZERO; 4]; 4];
+        for (i, row) in m.iter_mut().enumerate() {
+            row[i] = SampledSpectrum::ONE;
+        }
         MuellerSpectrum { m, outgoing: frame, incoming: frame }
     }
 
@@ -99,11 +106,11 @@ impl Mueller for MuellerSpectrum {
         wo: DVec3,
         wi: DVec3,
     ) -> MuellerSpectrum {
-        MuellerSpectrum {
-            m: std::array::from_fn(|i| std::array::from_fn(|j| elements(i, j))),
-            outgoing: ReferenceFrame::new(axes[0], wo),
-            incoming: ReferenceFrame::new(axes[1], -wi),
+        let mut m = [[ZERO; 4]; 4];
+        for (i, j) in (0..16).map(|k| (k / 4, k % 4)) {
+            m[i][j] = elements(i, j);
         }
+        MuellerSpectrum { m, outgoing: ReferenceFrame::new(axes[0], wo), incoming: ReferenceFrame::new(axes[1], -wi) }
     }
 
     #[inline]
@@ -130,15 +137,19 @@ impl Mueller for MuellerSpectrum {
         // A frame that is free takes that of the other.
         let choose = |a: ReferenceFrame, b: ReferenceFrame| if a == ReferenceFrame::default() { b } else { a };
         let (outgoing, incoming) = (choose(self.outgoing, other.outgoing), choose(self.incoming, other.incoming));
-        let [a, b] = [self, other].map(|m| m.with_outgoing(outgoing).with_incoming(incoming).m);
-        let m = std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + b[i][j]));
-        MuellerSpectrum { m, outgoing, incoming }
+        let mut sum = self.with_outgoing(outgoing).with_incoming(incoming);
+        let other = other.with_outgoing(outgoing).with_incoming(incoming);
+        for (sum, more) in sum.m.as_flattened_mut().iter_mut().zip(other.m.as_flattened()) {
+            *sum += *more;
+        }
+        sum
     }
 
     #[inline]
     fn apply(&self, light: &StokesSpectrum) -> StokesSpectrum {
         let s = light.in_frame(self.incoming).s;
-        let mut out = self.m.map(|row| row[0] * s[0] + row[1] * s[1] + row[2] * s[2] + row[3] * s[3]);
+        let of = |row: &[SampledSpectrum; 4]| row[0] * s[0] + row[1] * s[1] + row[2] * s[2] + row[3] * s[3];
+        let mut out = [of(&self.m[0]), of(&self.m[1]), of(&self.m[2]), of(&self.m[3])];
         out[0] = without_rounding(out[0], self.m[0][0] * s[0]);
         StokesSpectrum { s: out, frame: self.outgoing }
     }

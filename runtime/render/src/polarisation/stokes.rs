@@ -81,7 +81,8 @@ impl Mul<f32> for StokesSpectrum {
     type Output = StokesSpectrum;
     #[inline]
     fn mul(self, factor: f32) -> StokesSpectrum {
-        StokesSpectrum { s: self.s.map(|s| s * factor), frame: self.frame }
+        let [s0, s1, s2, s3] = self.s;
+        StokesSpectrum { s: [s0 * factor, s1 * factor, s2 * factor, s3 * factor], frame: self.frame }
     }
 }
 
