@@ -2,11 +2,13 @@
 //!
 //! Normals go through the inverse transpose, so a mirrored surface keeps the side that its author gave it.
 
-use glam::{DAffine3, DVec2, DVec3};
+use std::sync::{Arc, OnceLock};
 
-use arsc_geometry::{Aabb, SurfacePoint, invert};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 
-use crate::{AccelError, Surface, SurfaceShape, TriangleMesh};
+use arsc_geometry::{Aabb, SurfacePoint, TriangleMesh, invert};
+
+use crate::{AccelError, Surface, SurfaceShape};
 
 /// Roundings granted to a position on a surface.
 const ROUNDINGS: f64 = 32.0;
@@ -43,14 +45,10 @@ impl SurfaceModel {
             }
             SurfaceShape::Plane => flat(Outline::Plane),
             SurfaceShape::Triangle(corners) => {
-                let uvs = vec![DVec2::ZERO, DVec2::X, DVec2::Y];
-                Triangles::place(corners.to_vec(), vec![[0, 1, 2]], uvs, vec![], &map, &inverse).map_err(fail)
+                Triangles::place(Content::Triangle(*corners), &map, &inverse).map_err(fail)
             }
-            SurfaceShape::Quad(corners) => {
-                let uvs = vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
-                Triangles::place(corners.to_vec(), QUAD.to_vec(), uvs, vec![], &map, &inverse).map_err(fail)
-            }
-            SurfaceShape::Mesh(mesh) => from_mesh(mesh, &map, &inverse).map_err(fail),
+            SurfaceShape::Quad(corners) => Triangles::place(Content::Quad(*corners), &map, &inverse).map_err(fail),
+            SurfaceShape::Mesh(mesh) => Triangles::place(Content::Mesh(mesh.clone()), &map, &inverse).map_err(fail),
         }
     }
 
@@ -195,71 +193,96 @@ impl Flat {
 /// Triangles in the world.
 #[derive(Clone, Debug)]
 pub struct Triangles {
-    pub positions: Vec<DVec3>,
-    pub triangles: Vec<[u32; 3]>,
-    uvs: Vec<DVec2>,
-    normals: Vec<DVec3>,
-    /// Sums of the areas up to and including each triangle.
-    cumulative_area: Vec<f64>,
+    content: Content,
+    map: DAffine3,
+    /// Inverse transpose, of normals.
+    normal_map: DMat3,
     bounds: Aabb,
     magnitude: f64,
     mirrored: bool,
-    /// Four corners, two triangles.
-    pub is_quad: bool,
+    /// Sums of the areas up to and including each triangle, made when first asked for.
+    cumulative_area: OnceLock<Vec<f64>>,
 }
 
-fn from_mesh(mesh: &TriangleMesh, map: &DAffine3, inverse: &DAffine3) -> Result<SurfaceModel, &'static str> {
-    let wide = |v: &[f32; 3]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
-    let positions = mesh.positions.iter().map(wide).collect();
-    let uvs = mesh.uvs.iter().map(|uv| DVec2::new(uv[0].into(), uv[1].into())).collect();
-    let normals = mesh.normals.iter().map(wide).collect();
-    Triangles::place(positions, mesh.triangles.clone(), uvs, normals, map, inverse)
+/// What the triangles are made of. Meshes are shared with whoever read them, and mapped point by point: they may be large.
+#[derive(Clone, Debug)]
+enum Content {
+    Triangle([DVec3; 3]),
+    /// In the order of [`QUAD`].
+    Quad([DVec3; 4]),
+    Mesh(Arc<TriangleMesh>),
+}
+
+impl Content {
+    fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        match self {
+            Content::Triangle(corners) => *corners,
+            Content::Quad(corners) => QUAD[triangle].map(|i| corners[i as usize]),
+            Content::Mesh(mesh) => mesh.corners(triangle),
+        }
+    }
+
+    fn uvs(&self, triangle: usize) -> Option<[DVec2; 3]> {
+        match self {
+            Content::Triangle(_) => Some([DVec2::ZERO, DVec2::X, DVec2::Y]),
+            Content::Quad(_) => {
+                let uvs = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+                Some(QUAD[triangle].map(|i| uvs[i as usize]))
+            }
+            Content::Mesh(mesh) => mesh.corner_uvs(triangle),
+        }
+    }
 }
 
 impl Triangles {
-    fn place(
-        mut positions: Vec<DVec3>,
-        triangles: Vec<[u32; 3]>,
-        uvs: Vec<DVec2>,
-        mut normals: Vec<DVec3>,
-        map: &DAffine3,
-        inverse: &DAffine3,
-    ) -> Result<SurfaceModel, &'static str> {
-        let count = positions.len();
-        if triangles.iter().flatten().any(|&i| i as usize >= count) {
-            return Err("a triangle names a vertex that does not exist");
-        }
-        if !(uvs.is_empty() || uvs.len() == count) || !(normals.is_empty() || normals.len() == count) {
-            return Err("normals or uvs are not one per vertex");
-        }
-        let normal_map = inverse.matrix3.transpose();
-        for p in &mut positions {
-            *p = map.transform_point3(*p);
-        }
-        for n in &mut normals {
-            *n = normal_map.mul_vec3(*n).normalize_or_zero();
-        }
-        if positions.iter().any(|p| !p.is_finite()) {
+    fn place(content: Content, map: &DAffine3, inverse: &DAffine3) -> Result<SurfaceModel, &'static str> {
+        let mut bounds = Aabb::EMPTY;
+        let mut include = |p: DVec3| {
+            let p = map.transform_point3(p);
+            bounds = bounds.union(&Aabb::new(p, p));
+            p.is_finite()
+        };
+        let finite = match &content {
+            Content::Triangle(corners) => corners.iter().all(|&p| include(p)),
+            Content::Quad(corners) => corners.iter().all(|&p| include(p)),
+            Content::Mesh(mesh) if !mesh.is_valid() => return Err("a vertex is missing, or not finite"),
+            Content::Mesh(mesh) => (0..mesh.positions.len() as u32).all(|vertex| include(mesh.position(vertex))),
+        };
+        if !finite {
             return Err("a vertex is not finite");
         }
-        let hull = |hull: Aabb, p: &DVec3| hull.union(&Aabb::new(*p, *p));
-        let bounds = positions.iter().fold(Aabb::EMPTY, hull);
-        let magnitude = if count == 0 { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
-        let mirrored = map.matrix3.determinant() < 0.0;
-        let is_quad = triangles == QUAD;
-        let cumulative_area = vec![];
-        let mut model =
-            Triangles { positions, triangles, uvs, normals, cumulative_area, bounds, magnitude, mirrored, is_quad };
-        let mut sum = 0.0;
-        for i in 0..model.triangles.len() {
-            sum += 0.5 * model.cross(i).length();
-            model.cumulative_area.push(sum);
-        }
-        Ok(SurfaceModel::Triangles(model))
+        let magnitude = if bounds.is_empty() { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
+        Ok(SurfaceModel::Triangles(Triangles {
+            content,
+            map: *map,
+            normal_map: inverse.matrix3.transpose(),
+            bounds,
+            magnitude,
+            mirrored: map.matrix3.determinant() < 0.0,
+            cumulative_area: OnceLock::new(),
+        }))
     }
 
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        match &self.content {
+            Content::Triangle(_) => 1,
+            Content::Quad(_) => 2,
+            Content::Mesh(mesh) => mesh.triangles.len(),
+        }
+    }
+
+    /// The four corners of a quad.
+    pub fn quad(&self) -> Option<[DVec3; 4]> {
+        match &self.content {
+            Content::Quad(corners) => Some(corners.map(|p| self.map.transform_point3(p))),
+            _ => None,
+        }
+    }
+
+    #[inline]
     pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].map(|i| self.positions[i as usize])
+        self.content.corners(triangle).map(|p| self.map.transform_point3(p))
     }
 
     fn cross(&self, triangle: usize) -> DVec3 {
@@ -276,8 +299,9 @@ impl Triangles {
         let across = dir.cross(ac);
         let determinant = ab.dot(across);
         let around = ao.cross(ab);
-        let weights = DVec2::new(ao.dot(across), dir.dot(around)) / determinant;
-        let t = ac.dot(around) / determinant;
+        let inverse = 1.0 / determinant;
+        let weights = DVec2::new(ao.dot(across), dir.dot(around)) * inverse;
+        let t = ac.dot(around) * inverse;
         (t.is_finite() && weights.is_finite()).then_some((t, weights))
     }
 
@@ -295,23 +319,23 @@ impl Triangles {
         if self.mirrored {
             n = -n;
         }
-        let index = self.triangles[triangle].map(|i| i as usize);
-        let (uv, along) = if self.uvs.is_empty() {
-            (w, ab)
-        } else {
-            let [ua, ub, uc] = index.map(|i| self.uvs[i]);
-            let (du, dv) = (ub - ua, uc - ua);
-            (ua + du * w.x + dv * w.y, (ab * dv.y - ac * du.y) * du.perp_dot(dv).signum())
+        let (uv, along) = match self.content.uvs(triangle) {
+            None => (w, ab),
+            Some([ua, ub, uc]) => {
+                let (du, dv) = (ub - ua, uc - ua);
+                (ua + du * w.x + dv * w.y, (ab * dv.y - ac * du.y) * du.perp_dot(dv).signum())
+            }
         };
         let dpdu = (along - n * n.dot(along)).try_normalize().unwrap_or_else(|| n.any_orthonormal_vector());
-        let mut ns = n;
-        if !self.normals.is_empty() {
-            let [na, nb, nc] = index.map(|i| self.normals[i]);
-            ns = (na * (1.0 - w.x - w.y) + nb * w.x + nc * w.y).normalize_or(n);
-            ns *= if ns.dot(n) < 0.0 { -1.0 } else { 1.0 };
-        }
         let p = a + ab * w.x + ac * w.y;
+        let ns = self.shading_normal(triangle, w).map_or(n, |ns| if ns.dot(n) < 0.0 { -ns } else { ns });
         (SurfacePoint { p, p_error: self.error(), n, uv, dpdu }, ns)
+    }
+
+    fn shading_normal(&self, triangle: usize, w: DVec2) -> Option<DVec3> {
+        let Content::Mesh(mesh) = &self.content else { return None };
+        let [na, nb, nc] = mesh.corner_normals(triangle)?.map(|n| self.normal_map.mul_vec3(n).normalize_or_zero());
+        (na * (1.0 - w.x - w.y) + nb * w.x + nc * w.y).try_normalize()
     }
 
     /// Distance along `dir` within which another surface coincides with a triangle.
@@ -324,14 +348,24 @@ impl Triangles {
         ROUNDINGS * f64::EPSILON * self.magnitude
     }
 
+    fn sums(&self) -> &[f64] {
+        self.cumulative_area.get_or_init(|| {
+            let mut sum = 0.0;
+            let up_to = |triangle| {
+                sum += 0.5 * self.cross(triangle).length();
+                sum
+            };
+            (0..self.len()).map(up_to).collect()
+        })
+    }
+
     fn area(&self) -> f64 {
-        self.cumulative_area.last().copied().unwrap_or(0.0)
+        self.sums().last().copied().unwrap_or(0.0)
     }
 
     fn sample(&self, choice: f64, u: [f64; 2]) -> Option<SurfacePoint> {
         let wanted = choice * self.area();
-        let triangle =
-            self.cumulative_area.partition_point(|&sum| sum <= wanted).min(self.triangles.len().checked_sub(1)?);
+        let triangle = self.sums().partition_point(|&sum| sum <= wanted).min(self.len().checked_sub(1)?);
         // Uniform over the triangle by folding the square (Heitz 2019).
         let weights = if u[0] + u[1] > 1.0 { DVec2::new(1.0 - u[0], 1.0 - u[1]) } else { DVec2::from_array(u) };
         Some(self.surface(triangle, weights).0)

@@ -33,6 +33,9 @@ enum Kind {
 /// Triangles are met this far beyond their edges, in units of their size, so that no ray passes between two.
 const SEAM: f64 = 1e-12;
 
+/// From so many triangles on, trees without spatial splits: those need several times the memory while they are built.
+const LARGE: usize = 4_000_000;
+
 /// A placed copy of a prototype.
 pub struct InstanceModel {
     pub prototype: Arc<EmbreeScene<Prototype>>,
@@ -71,8 +74,8 @@ pub struct World {
     kinds: Vec<Kind>,
     /// Surfaces behind the primitives of `Kind::Flats`.
     flats: Vec<u32>,
-    /// Surface and triangle behind each native triangle.
-    triangles: Vec<(u32, u32)>,
+    /// Surfaces behind the native triangles, ascending.
+    runs: Vec<Run>,
     /// Surface behind each native quad.
     quads: Vec<u32>,
     /// Instances behind the primitives of `Kind::Instances`, and those that Embree cannot hold.
@@ -82,6 +85,13 @@ pub struct World {
     /// Strategy `native`: all surfaces and instances that are finite.
     pub plain: Option<Plain>,
     extent: Extent,
+}
+
+/// The native triangles from `first` to the next run's are those of one surface, in its order.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    first: u32,
+    surface: u32,
 }
 
 /// Vertices and indices for Embree.
@@ -113,7 +123,7 @@ impl World {
             instances,
             kinds: vec![],
             flats: vec![],
-            triangles: vec![],
+            runs: vec![],
             quads: vec![],
             placed: vec![],
             open_instances: vec![],
@@ -151,7 +161,7 @@ impl World {
                 world.add_surface(surface, &mut native);
             }
         }
-        world.commit(&native)
+        world.commit(native)
     }
 
     /// The placed instances and these surfaces in a tree of our own.
@@ -163,7 +173,7 @@ impl World {
                 SurfaceModel::Flat(_) => {
                     items.push((Item::Flat { surface }, self.surfaces[surface as usize].bounds()));
                 }
-                SurfaceModel::Triangles(mesh) => items.extend((0..mesh.triangles.len()).map(|triangle| {
+                SurfaceModel::Triangles(mesh) => items.extend((0..mesh.len()).map(|triangle| {
                     let corners = mesh.corners(triangle);
                     let bounds = corners.iter().fold(Aabb::EMPTY, |hull, &p| hull.union(&Aabb::new(p, p)));
                     (Item::Triangle { surface, triangle: triangle as u32 }, bounds)
@@ -192,24 +202,27 @@ impl World {
     fn add_surface(&mut self, surface: u32, native: &mut Native) {
         match &self.surfaces[surface as usize] {
             SurfaceModel::Flat(_) => self.flats.push(surface),
-            SurfaceModel::Triangles(mesh) if mesh.is_quad => {
-                let corners = [0, 1, 2, 3].map(|i| mesh.positions[i]);
-                native.quads.push([0, 1, 2, 3].map(|i| i + native.quad_vertices.len() as u32));
-                native.quad_vertices.extend(self.extent.grown(corners));
-                self.quads.push(surface);
-            }
-            SurfaceModel::Triangles(mesh) => {
-                for triangle in 0..mesh.triangles.len() {
-                    let first = native.triangle_vertices.len() as u32;
-                    native.triangles.push([first, first + 1, first + 2]);
-                    native.triangle_vertices.extend(self.extent.grown(mesh.corners(triangle)));
-                    self.triangles.push((surface, triangle as u32));
+            SurfaceModel::Triangles(mesh) => match mesh.quad() {
+                Some(corners) => {
+                    native.quads.push([0, 1, 2, 3].map(|i| i + native.quad_vertices.len() as u32));
+                    native.quad_vertices.extend(self.extent.grown(corners));
+                    self.quads.push(surface);
                 }
-            }
+                None => {
+                    self.runs.push(Run { first: native.triangles.len() as u32, surface });
+                    native.triangles.reserve(mesh.len());
+                    native.triangle_vertices.reserve(3 * mesh.len());
+                    for triangle in 0..mesh.len() {
+                        let first = native.triangle_vertices.len() as u32;
+                        native.triangles.push([first, first + 1, first + 2]);
+                        native.triangle_vertices.extend(self.extent.grown(mesh.corners(triangle)));
+                    }
+                }
+            },
         }
     }
 
-    fn commit(mut self, native: &Native) -> Result<EmbreeScene<World>, AccelError> {
+    fn commit(mut self, native: Native) -> Result<EmbreeScene<World>, AccelError> {
         let users = [
             (Kind::Solids, self.level.primitive_count()),
             (Kind::Flats, self.flats.len()),
@@ -228,7 +241,8 @@ impl World {
             self.kinds.push(Kind::Facets);
         }
         let kinds = self.kinds.clone();
-        let mut builder = SceneBuilder::new(device()?, Arc::new(self), BuildQuality::High)?;
+        let quality = if native.triangles.len() > LARGE { BuildQuality::Medium } else { BuildQuality::High };
+        let mut builder = SceneBuilder::new(device()?, Arc::new(self), quality)?;
         for (_, count) in users {
             builder.user_geometry(count)?;
         }
@@ -238,6 +252,8 @@ impl World {
         if kinds.contains(&Kind::Quads) {
             builder.quads(&native.quad_vertices, &native.quads, true)?;
         }
+        // Embree has its own copy, and needs room for the build.
+        drop(native);
         let world = builder.callbacks();
         world.level.add_facets(&mut builder, &world.extent)?;
         Ok(builder.commit()?)
@@ -267,7 +283,7 @@ impl World {
             match &self.surfaces[surface as usize] {
                 SurfaceModel::Flat(flat) => self.visit_flat(surface, flat, query),
                 SurfaceModel::Triangles(mesh) => {
-                    for triangle in 0..mesh.triangles.len() as u32 {
+                    for triangle in 0..mesh.len() as u32 {
                         self.visit_triangle(surface, mesh, triangle, query);
                     }
                 }
@@ -325,7 +341,9 @@ impl World {
     fn visit_native(&self, query: &mut Query, candidate: &NativeCandidate) {
         let (surface, triangles) = match self.kinds[candidate.geometry.0 as usize] {
             Kind::Triangles => {
-                let (surface, triangle) = self.triangles[candidate.primitive as usize];
+                let next = self.runs.partition_point(|run| run.first <= candidate.primitive);
+                let Run { first, surface } = self.runs[next - 1];
+                let triangle = candidate.primitive - first;
                 (surface, triangle..triangle + 1)
             }
             Kind::Facets => return self.level.visit_facet(candidate.primitive, query),
