@@ -39,6 +39,25 @@ fn disk() {
     floor(stage).assert_is(RHO * RADIANCE * r * r / (r * r + h * h), 2e-3);
 }
 
+/// The disk again, as the one lit face of a dark can, and as the one face of a lamp that is not dark; and with its
+/// opposite lit more brightly, which the floor does not see.
+#[test]
+fn one_face_of_a_can() {
+    let (r, h) = (0.7, 1.2);
+    let lamp = |radiance: f64| emitter(constant(radiance));
+    let can = Shape::Cylinder { radius: r, height: 2.0 };
+    let place = facing_down(DVec3::new(0.0, 0.0, h + 2.0));
+    for (whole, others) in [
+        (lambert(0.0), vec![(2, lamp(RADIANCE))]),
+        (lamp(RADIANCE), vec![(0, lambert(0.0)), (1, lambert(0.0))]),
+        (lambert(0.0), vec![(1, lamp(5.0 * RADIANCE)), (2, lamp(RADIANCE))]),
+    ] {
+        let mut stage = Stage::default();
+        stage.faces(can.clone(), place, whole, others);
+        floor(stage).assert_is(RHO * RADIANCE * r * r / (r * r + h * h), 4e-3);
+    }
+}
+
 /// Configuration factor of a parallel rectangle, one corner of which is above the point (Howell, B-3).
 fn corner_factor(a: f64, b: f64, h: f64) -> f64 {
     let (ra, rb) = ((a * a + h * h).sqrt(), (b * b + h * h).sqrt());

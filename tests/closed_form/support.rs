@@ -1,7 +1,7 @@
 //! Small scenes and the means of their pictures.
 
 use arsc_accel::{
-    BuildOptions, Csg, CsgLeaf, MaterialIndex, Scene, SceneGeometry, Shape, Solid, Surface, SurfaceShape,
+    BuildOptions, Csg, CsgLeaf, FaceMaterial, MaterialIndex, Scene, SceneGeometry, Shape, Solid, Surface, SurfaceShape,
 };
 use arsc_image::SpectralImage;
 use arsc_render::{
@@ -30,6 +30,23 @@ impl Stage {
         let material = self.add_material(material);
         let leaves = vec![CsgLeaf { shape, world_from_object, material }];
         self.geometry.solids.push(Solid { tree: Csg::Leaf(0), leaves });
+        self
+    }
+
+    /// One solid with other materials on some faces.
+    pub fn faces(
+        &mut self,
+        shape: Shape,
+        place: DAffine3,
+        whole: Material,
+        others: Vec<(u32, Material)>,
+    ) -> &mut Stage {
+        self.solid(shape, place, whole);
+        let base = MaterialIndex(self.materials.len() as u32 - 1);
+        for (face, material) in others {
+            let material = self.add_material(material);
+            self.geometry.faces.push(FaceMaterial { base, face, material });
+        }
         self
     }
 

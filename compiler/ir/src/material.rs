@@ -121,6 +121,8 @@ pub struct Attributes {
     pub medium: Option<u32>,
     /// For walls cut into the subtree by a subtraction outside of it.
     pub cut: Option<CutRule>,
+    /// The bsdf and emitter are for this face of primitives alone, where they win over those for the whole.
+    pub face: Option<u32>,
 }
 
 /// What a leaf ends up with.
@@ -133,6 +135,8 @@ pub struct Material {
     pub medium: Option<u32>,
     /// The bsdf whose index of refraction holds behind this wall, where it is not the wall's own: in a cut wall.
     pub inside: Option<u32>,
+    /// Faces of the leaf that are covered otherwise, ascending; materials without faces of their own.
+    pub faces: Vec<(u32, MaterialId)>,
 }
 
 impl Bsdf {

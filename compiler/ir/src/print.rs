@@ -207,9 +207,10 @@ impl Display for Text<'_, Density> {
 
 impl Display for Text<'_, Material> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Material { bsdf, emitter, medium, inside } = *self.0;
+        let Material { bsdf, emitter, medium, inside, ref faces } = *self.0;
         let call = Call::new(f, "material")?.index("bsdf", "b", bsdf)?.index("emitter", "e", emitter)?;
-        call.index("medium", "v", medium)?.index("inside", "b", inside)?.end()
+        let call = call.index("medium", "v", medium)?.index("inside", "b", inside)?;
+        faces.iter().try_fold(call, |call, (face, id)| call.value(format_args!("face({face}, m{})", id.0)))?.end()
     }
 }
 
@@ -228,14 +229,14 @@ impl Display for Text<'_, NodeKind> {
             NodeKind::Transform { parent_from_child, child } => {
                 Call::new(f, "transform")?.value(Text(child))?.map(parent_from_child)?.end()
             }
-            NodeKind::Attributes { attributes: Attributes { bsdf, emitter, medium, cut }, precedence, child } => {
+            NodeKind::Attributes { attributes: Attributes { bsdf, emitter, medium, cut, face }, precedence, child } => {
                 let name = match precedence {
                     Precedence::Inner => "with",
                     Precedence::Outer => "override",
                 };
                 let call = Call::new(f, name)?.value(Text(child))?;
                 let call = call.index("bsdf", "b", *bsdf)?.index("emitter", "e", *emitter)?;
-                let call = call.index("medium", "v", *medium)?;
+                let call = call.index("medium", "v", *medium)?.index("face", "", *face)?;
                 match cut {
                     None => call.end(),
                     Some(CutRule::Inherit) => call.arg("cut", "inherit")?.end(),

@@ -284,8 +284,17 @@ fn material(term: Term, ir: &Ir) -> Result<Material, Fault> {
     let emitter = args.index("emitter", 'e', ir.emitters.len())?;
     let medium = args.index("medium", 'v', ir.media.len())?;
     let inside = args.index("inside", 'b', ir.bsdfs.len())?;
-    args.end()?;
-    Ok(Material { bsdf, emitter, medium, inside })
+    let mut faces = Vec::new();
+    while !args.rest.is_empty() {
+        let mut face = Args::new(args.next()?)?;
+        if face.name != "face" {
+            return face.unknown("face");
+        }
+        let number = integer(&face.next()?)?;
+        faces.push((number, MaterialId(index(&face.next()?, 'm', ir.materials.len())?)));
+        face.end()?;
+    }
+    Ok(Material { bsdf, emitter, medium, inside, faces })
 }
 
 fn node_kind(mut args: Args, ir: &Ir, meshes: Meshes<'_>) -> Result<NodeKind, Fault> {
@@ -342,7 +351,8 @@ fn attributes(args: &mut Args, ir: &Ir, precedence: Precedence) -> Result<NodeKi
         Some(Term { kind: TermKind::Word("inherit"), .. }) => Some(CutRule::Inherit),
         Some(term) => Some(CutRule::Bsdf(index(&term, 'b', ir.bsdfs.len())?)),
     };
-    Ok(NodeKind::Attributes { attributes: Attributes { bsdf, emitter, medium, cut }, precedence, child })
+    let face = args.optional("face").map(|term| integer(&term)).transpose()?;
+    Ok(NodeKind::Attributes { attributes: Attributes { bsdf, emitter, medium, cut, face }, precedence, child })
 }
 
 fn leaf(args: &mut Args, ir: &Ir, meshes: Meshes<'_>) -> Result<Leaf, Fault> {
@@ -580,12 +590,8 @@ mod tests {
     fn any_recipe() -> impl Strategy2<Value = Recipe> {
         let cut = prop_oneof![Just(None), Just(Some(CutRule::Inherit)), Just(Some(CutRule::Bsdf(1)))];
         let (bsdf, emitter, medium) = (prop::option::of(0..2u32), prop::option::of(0..1u32), prop::option::of(0..3u32));
-        let bundle = (bsdf, emitter, medium, cut).prop_map(|(bsdf, emitter, medium, cut)| Attributes {
-            bsdf,
-            emitter,
-            medium,
-            cut,
-        });
+        let bundle = (bsdf, emitter, medium, cut, prop::option::of(0..9u32))
+            .prop_map(|(bsdf, emitter, medium, cut, face)| Attributes { bsdf, emitter, medium, cut, face });
         prop_oneof![
             4 => any_leaf().prop_map(Recipe::Leaf),
             4 => (0..4u8, prop::collection::vec(any::<usize>(), 1..4)).prop_map(|(kind, of)| Recipe::Boolean(kind, of)),

@@ -9,8 +9,8 @@ use arsc_geometry::{DVec3, invert};
 use arsc_spectral::Spectrum;
 
 use crate::{
-    Attributes, Bsdf, Camera, CutRule, Density, Environment, Facets, Ir, Leaf, Light, MaterialId, Medium, NodeId,
-    NodeKind, PhaseFunction, Projection, Surface,
+    Attributes, Bsdf, Camera, CutRule, Density, Environment, Facets, Ir, Leaf, Light, Material, MaterialId, Medium,
+    NodeId, NodeKind, PhaseFunction, Projection, Surface,
 };
 
 /// Spectra nest at most this deep, so that everybody may recurse into them.
@@ -47,7 +47,8 @@ pub fn verify(ir: &Ir) -> Result<(), Vec<Violation>> {
     }
     for (id, material) in ir.materials.iter().enumerate() {
         let known = check_attributes(ir, material.bsdf, material.emitter, material.medium)
-            .and_then(|()| check_attributes(ir, material.inside, None, None));
+            .and_then(|()| check_attributes(ir, material.inside, None, None))
+            .and_then(|()| check_faces(ir, id, material));
         found.check(known, || format!("m{id}"));
     }
     let mut contents: Vec<Contents> = Vec::with_capacity(ir.nodes.len());
@@ -116,7 +117,7 @@ fn check_node(ir: &Ir, id: usize, contents: &[Contents]) -> Check<Contents> {
             require(invert(parent_from_child).is_some(), "the map is not finite and invertible")?;
             Ok(below)
         }
-        NodeKind::Attributes { attributes: Attributes { bsdf, emitter, medium, cut }, .. } => {
+        NodeKind::Attributes { attributes: Attributes { bsdf, emitter, medium, cut, face: _ }, .. } => {
             check_attributes(ir, *bsdf, *emitter, *medium)?;
             if let Some(CutRule::Bsdf(bsdf)) = cut {
                 check_attributes(ir, Some(*bsdf), None, None)?;
@@ -132,6 +133,12 @@ fn check_attributes(ir: &Ir, bsdf: Option<u32>, emitter: Option<u32>, medium: Op
     require(medium.is_none_or(|id| (id as usize) < ir.media.len()), "there is no such medium")?;
     require(bsdf.is_none_or(|id| (id as usize) < ir.bsdfs.len()), "there is no such bsdf")?;
     require(emitter.is_none_or(|id| (id as usize) < ir.emitters.len()), "there is no such emitter")
+}
+
+fn check_faces(ir: &Ir, id: usize, material: &Material) -> Check {
+    let plain = |other: &MaterialId| (other.0 as usize) < id && ir.materials[other.0 as usize].faces.is_empty();
+    require(material.faces.iter().all(|(_, other)| plain(other)), "a face has no material of its own from before")?;
+    require(material.faces.is_sorted_by(|a, b| a.0 < b.0), "the faces do not ascend")
 }
 
 fn check_leaf(ir: &Ir, leaf: &Leaf) -> Check<Contents> {

@@ -205,7 +205,20 @@ impl Filling<'_, '_> {
 
     fn fill_leaf(&mut self, leaf: &mut Leaf, interior: Interior) -> bool {
         let Leaf::Solid { material: Some(id), .. } = leaf else { return false };
-        let old = self.ir.materials[id.0 as usize].clone();
+        let new = self.fill_material(*id, interior);
+        if new == *id {
+            return false;
+        }
+        self.log.fire("fill");
+        *id = new;
+        true
+    }
+
+    /// The material with its faces; those have none of their own.
+    fn fill_material(&mut self, id: MaterialId, interior: Interior) -> MaterialId {
+        let mut old = self.ir.materials[id.0 as usize].clone();
+        let mut faces = std::mem::take(&mut old.faces);
+        faces.iter_mut().for_each(|(_, face)| *face = self.fill_material(*face, interior));
         let bsdf = match old.bsdf {
             None if old.medium.is_some() => Some(self.bsdf(Bsdf::Inert)),
             None if interior.medium.is_some() => {
@@ -215,13 +228,7 @@ impl Filling<'_, '_> {
         };
         let has_index = bsdf.is_some_and(|bsdf| self.ir.bsdfs[bsdf as usize].has_index());
         let inside = interior.index.filter(|_| has_index && interior.index != bsdf);
-        let new = Material { bsdf, emitter: old.emitter, medium: interior.medium, inside };
-        if new == old {
-            return false;
-        }
-        self.log.fire("fill");
-        *id = self.material(new);
-        true
+        self.material(Material { bsdf, emitter: old.emitter, medium: interior.medium, inside, faces })
     }
 
     fn bsdf(&mut self, bsdf: Bsdf) -> u32 {

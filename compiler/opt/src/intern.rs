@@ -155,6 +155,6 @@ impl Structural for Medium {
 
 impl Structural for Material {
     fn structural_hash(&self, hasher: &mut FxHasher) {
-        (self.bsdf, self.emitter, self.medium, self.inside).hash(hasher);
+        (self.bsdf, self.emitter, self.medium, self.inside, &self.faces).hash(hasher);
     }
 }

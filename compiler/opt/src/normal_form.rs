@@ -29,7 +29,7 @@ pub fn check_normal_form(ir: &Ir) -> Result<(), String> {
         let role = role(ir, NodeId(id as u32), &roles).map_err(|message| format!("%{id} {message}"))?;
         roles.push(role);
     }
-    let mut seen: Vec<_> = ir.materials.iter().map(|m| (m.bsdf, m.emitter, m.medium, m.inside)).collect();
+    let mut seen: Vec<_> = ir.materials.iter().map(|m| (m.bsdf, m.emitter, m.medium, m.inside, &m.faces)).collect();
     seen.sort_unstable();
     if seen.windows(2).any(|pair| pair[0] == pair[1]) {
         return Err("a material is there twice".to_owned());

@@ -13,6 +13,9 @@
 //! everywhere, the difference is distributed over the union: (X ∪ Y) − B = (X − B') ∪ (Y − B''), B' covered like X
 //! and B'' like Y. Where X and Y overlap, both walls coincide and the first operand has precedence, which is X.
 //!
+//! What is attached to a face of primitives (`with_face`) wins over what is attached to the whole, nearest first, but not
+//! over an `override`. A cut wall has no such faces: it is covered as a whole.
+//!
 //! Rewrites: `attach`, `override`, `cut_with`, `inherit`, `distribute_inherit`.
 
 use arsc_diagnostics::Span;
@@ -32,6 +35,16 @@ struct State {
     cutting: Option<Option<MaterialId>>,
     /// Inside of a subtrahend to which a cut rule applies.
     cover: Option<MaterialId>,
+    /// Index into [`Propagation::faces`].
+    faces: u32,
+}
+
+/// What is attached to a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct FaceAttributes {
+    face: u32,
+    bsdf: Option<u32>,
+    emitter: Option<u32>,
 }
 
 /// The material of a solid at its inner points.
@@ -97,6 +110,8 @@ struct Propagation<'a, 'b> {
     has_inherit: Vec<bool>,
     out: Vec<Node>,
     interior: Vec<Interior>,
+    /// Lists of what is attached to faces, by face; the first is empty.
+    faces: Vec<Vec<FaceAttributes>>,
     memo: FxHashMap<(NodeId, State), NodeId>,
     tasks: Vec<Task>,
     results: Vec<NodeId>,
@@ -121,6 +136,7 @@ pub(crate) fn run(ir: Ir, log: &mut Log) -> Ir {
         out: Vec::with_capacity(ir.nodes.len()),
         interior: Vec::with_capacity(ir.nodes.len()),
         memo: FxHashMap::default(),
+        faces: vec![Vec::new()],
         tasks: vec![Task::Enter { node: ir.root, state: State::default() }],
         results: Vec::new(),
         bsdf,
@@ -254,7 +270,11 @@ impl Propagation<'_, '_> {
     }
 
     fn push(&mut self, kind: NodeKind, origin: Span) -> NodeId {
-        let interior = self.interior_of(&kind);
+        let mut interior = self.interior_of(&kind);
+        if let Interior::One(material) = interior {
+            // Faces are the leaf's, not what fills it.
+            interior = Interior::One(self.with_faces(material, Vec::new()));
+        }
         self.out.push(Node { kind, origin });
         self.interior.push(interior);
         NodeId(self.out.len() as u32 - 1)
@@ -280,6 +300,10 @@ impl Propagation<'_, '_> {
 
     fn attach(&mut self, mut state: State, attributes: Attributes, precedence: Precedence) -> State {
         self.log.fire(if precedence == Precedence::Inner { "attach" } else { "override" });
+        if let Some(face) = attributes.face {
+            state.faces = self.attach_to_face(state.faces, face, attributes);
+            return state;
+        }
         match precedence {
             Precedence::Inner => {
                 let attached = &mut state.attached;
@@ -302,6 +326,23 @@ impl Propagation<'_, '_> {
         state
     }
 
+    /// The list with more on a face. Few lists differ, so that looking them up one by one is enough.
+    fn attach_to_face(&mut self, list: u32, face: u32, attributes: Attributes) -> u32 {
+        let mut faces = self.faces[list as usize].clone();
+        let at = faces.partition_point(|entry| entry.face < face);
+        if faces.get(at).is_none_or(|entry| entry.face != face) {
+            faces.insert(at, FaceAttributes { face, bsdf: None, emitter: None });
+        }
+        let entry = &mut faces[at];
+        entry.bsdf = attributes.bsdf.or(entry.bsdf);
+        entry.emitter = attributes.emitter.or(entry.emitter);
+        let known = self.faces.iter().rposition(|list| *list == faces);
+        known.unwrap_or_else(|| {
+            self.faces.push(faces);
+            self.faces.len() - 1
+        }) as u32
+    }
+
     /// What a wall shows under the cut rule in force, if there is one.
     fn cover(&mut self, state: &State, minuend: Option<MaterialId>) -> Option<MaterialId> {
         match state.forced.cut.or(state.attached.cut)? {
@@ -318,13 +359,54 @@ impl Propagation<'_, '_> {
 
     fn leaf(&mut self, leaf: &Leaf, state: &State) -> Leaf {
         let mut leaf = leaf.clone();
+        let own = match &leaf {
+            Leaf::Solid { material, .. } | Leaf::Surface { material, .. } => *material,
+        };
+        let own = own.map(|id| &self.source.materials[id.0 as usize]);
+        let forced = state.forced;
+        let mut bsdf = own.and_then(|own| own.bsdf).or(state.attached.bsdf);
+        let mut emitter = own.and_then(|own| own.emitter).or(state.attached.emitter);
+        let medium = forced.medium.or(own.and_then(|own| own.medium)).or(state.attached.medium);
+        let count = match &leaf {
+            Leaf::Solid { shape, .. } => shape.face_count(),
+            Leaf::Surface { .. } => 0,
+        };
+        let mut faces = self.face_attributes(own, state);
+        faces.retain(|entry| entry.face < count);
+        if count == 1 {
+            // One face is the whole, and stays so when an unbounded shape is given ends.
+            for entry in faces.drain(..) {
+                bsdf = entry.bsdf.or(bsdf);
+                emitter = entry.emitter.or(emitter);
+            }
+        }
+        let (bsdf, emitter) = (forced.bsdf.or(bsdf), forced.emitter.or(emitter));
+        let covered = state.cover.unwrap_or_else(|| {
+            let plain = self.material(bsdf, emitter, medium);
+            let mut others = Vec::new();
+            for entry in faces {
+                let bsdf = forced.bsdf.or(entry.bsdf).or(bsdf);
+                let emitter = forced.emitter.or(entry.emitter).or(emitter);
+                let material = self.material(bsdf, emitter, medium);
+                others.extend((material != plain).then_some((entry.face, material)));
+            }
+            self.with_faces(plain, others)
+        });
         let (Leaf::Solid { material, .. } | Leaf::Surface { material, .. }) = &mut leaf;
-        let own = material.map(|id| &self.source.materials[id.0 as usize]);
-        let bsdf = state.forced.bsdf.or(own.and_then(|own| own.bsdf)).or(state.attached.bsdf);
-        let emitter = state.forced.emitter.or(own.and_then(|own| own.emitter)).or(state.attached.emitter);
-        let medium = state.forced.medium.or(own.and_then(|own| own.medium)).or(state.attached.medium);
-        *material = Some(state.cover.unwrap_or_else(|| self.material(bsdf, emitter, medium)));
+        *material = Some(covered);
         leaf
+    }
+
+    /// What is attached to faces, with those of a material that the leaf already has.
+    fn face_attributes(&self, own: Option<&Material>, state: &State) -> Vec<FaceAttributes> {
+        let mut faces = self.faces[state.faces as usize].clone();
+        for &(face, id) in own.map_or(&[][..], |own| &own.faces) {
+            let Material { bsdf, emitter, .. } = self.source.materials[id.0 as usize];
+            faces.retain(|entry| entry.face != face);
+            faces.push(FaceAttributes { face, bsdf, emitter });
+        }
+        faces.sort_unstable_by_key(|entry| entry.face);
+        faces
     }
 
     /// The material of these entries of the source's tables.
@@ -334,7 +416,18 @@ impl Propagation<'_, '_> {
             emitter: emitter.map(|emitter| self.emitter[emitter as usize]),
             medium: medium.map(|medium| self.medium[medium as usize]),
             inside: None,
+            faces: Vec::new(),
         }))
+    }
+
+    /// A material with these faces instead of its own.
+    fn with_faces(&mut self, id: MaterialId, faces: Vec<(u32, MaterialId)>) -> MaterialId {
+        let material = &self.materials.values[id.0 as usize];
+        if material.faces == faces {
+            return id;
+        }
+        let material = Material { faces, ..material.clone() };
+        MaterialId(self.materials.intern(material))
     }
 
     /// The minuend of a difference is the last result: goes on to what is subtracted from it.

@@ -10,7 +10,7 @@
 //! Rewrites: `separate_transmissive`, `root_to_group`.
 
 use arsc_diagnostics::Span;
-use arsc_ir::{Bsdf, Ir, Leaf, Material, Node, NodeId, NodeKind};
+use arsc_ir::{Bsdf, Ir, Leaf, Material, MaterialId, Node, NodeId, NodeKind};
 
 use crate::pipeline::Log;
 
@@ -46,7 +46,8 @@ fn separate(ir: &mut Ir, objects: Vec<NodeId>, origin: Span, log: &mut Log) -> V
 /// Light gets into a solid of this material.
 pub(crate) fn is_transmissive(ir: &Ir, material: &Material) -> bool {
     let bsdf = material.bsdf.map(|bsdf| &ir.bsdfs[bsdf as usize]);
-    bsdf.map_or(material.medium.is_some(), Bsdf::is_transmissive)
+    let face_is = |id: MaterialId| is_transmissive(ir, &ir.materials[id.0 as usize]);
+    bsdf.map_or(material.medium.is_some(), Bsdf::is_transmissive) || material.faces.iter().any(|face| face_is(face.1))
 }
 
 /// For each node, whether light passes through a leaf below it.

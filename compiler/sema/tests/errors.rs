@@ -251,6 +251,15 @@ fn not_implemented_is_said() {
 }
 
 #[test]
+fn faces_that_are_not_there() {
+    expect("scene { sphere() |> with_face(1, emitter(blackbody(3000K))) }", &[("E0201", "1")]);
+    expect("scene { cylinder() |> rotate_x(9deg) |> with_face(3, emitter(blackbody(3000K))) }", &[("E0201", "3")]);
+    expect("scene { cylinder() |> with_face(2, emitter(blackbody(3000K))) }", &[]);
+    expect("scene { cylinder() |> with_face(-1, emitter(blackbody(3000K))) }", &[("E0201", "-1")]);
+    expect("scene { disk() |> with_face(0, emitter(blackbody(3000K))) }", &[("E0110", "disk()")]);
+}
+
+#[test]
 fn sizes_that_make_no_solid() {
     for (bad, label) in [
         ("paraboloid(radius: -1)", "-1"),

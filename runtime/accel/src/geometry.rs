@@ -116,10 +116,20 @@ pub struct Instance {
     pub world_from_object: DAffine3,
 }
 
+/// On leaves of material `base`, this face shows another material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FaceMaterial {
+    pub base: MaterialIndex,
+    pub face: u32,
+    pub material: MaterialIndex,
+}
+
 /// Everything that can be hit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneGeometry {
     pub solids: Vec<Solid>,
     pub surfaces: Vec<Surface>,
     pub instances: Vec<Instance>,
+    /// Where faces of a leaf are covered otherwise than the rest of it.
+    pub faces: Vec<FaceMaterial>,
 }

@@ -66,6 +66,8 @@ pub struct AreaSample {
     pub uv: DVec2,
     /// Density per unit of world area, over the whole part whether it is on the solid's boundary or not.
     pub pdf_area: f64,
+    /// What the point shows.
+    pub material: MaterialIndex,
 }
 
 impl Hit {

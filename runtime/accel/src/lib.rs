@@ -10,6 +10,7 @@ mod coincidence;
 mod counted;
 mod error;
 mod expression;
+mod faces;
 mod facets;
 mod frame;
 mod geometry;
@@ -29,6 +30,8 @@ use expression::Expression;
 pub use arsc_geometry::{Aabb, Ray, Shape, TriangleMesh};
 pub use budget::Budget;
 pub use error::AccelError;
-pub use geometry::{Csg, CsgLeaf, Instance, MaterialIndex, SceneGeometry, Solid, Strategy, Surface, SurfaceShape};
+pub use geometry::{
+    Csg, CsgLeaf, FaceMaterial, Instance, MaterialIndex, SceneGeometry, Solid, Strategy, Surface, SurfaceShape,
+};
 pub use hit::{AreaSample, Hit, Interval, Parametrization, PartId};
 pub use scene::{BuildOptions, BuildStats, Part, PartKind, Scene};

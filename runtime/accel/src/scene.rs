@@ -8,8 +8,9 @@ use std::time::{Duration, Instant};
 use glam::{DVec2, DVec3};
 
 use arsc_embree::Scene as EmbreeScene;
-use arsc_geometry::{Aabb, Foot, Placed, Ray, SurfacePoint};
+use arsc_geometry::{Aabb, Foot, Placed, Ray, Shape, SurfacePoint};
 
+use crate::faces::Faces;
 use crate::frame::Frame;
 use crate::level::{Level, Prototype};
 use crate::nearest::{Candidate, Target};
@@ -108,6 +109,7 @@ pub struct Scene {
     /// The greatest tolerance of any member, in the world.
     slack: f64,
     world: EmbreeScene<World>,
+    faces: Faces,
 }
 
 impl Scene {
@@ -145,7 +147,7 @@ impl Scene {
         };
         let Plan { members, parts, bounds, bounded } = plan;
         let slack = members.iter().map(Member::tolerance).fold(0.0, f64::max);
-        Ok(Scene { members, parts, bounds, bounded, stats, slack, world })
+        Ok(Scene { members, parts, bounds, bounded, stats, slack, world, faces: Faces::new(&geometry.faces) })
     }
 
     /// Holds everything; infinite where an unbounded solid or plane is.
@@ -170,6 +172,32 @@ impl Scene {
     /// Number of solids, instances included.
     pub fn solid_count(&self) -> u32 {
         self.members.len() as u32
+    }
+
+    /// The faces of a part that show another material than the part's, ascending.
+    pub fn face_materials(&self, part: PartId) -> &[(u32, MaterialIndex)] {
+        self.faces.of(self.parts[part.0 as usize].material)
+    }
+
+    /// The part's number of faces; 1 for surfaces.
+    pub fn face_count(&self, part: PartId) -> u32 {
+        match self.parts[part.0 as usize].kind {
+            PartKind::Surface { .. } => 1,
+            PartKind::Leaf { solid, leaf } => self.shape(solid, leaf).face_count(),
+        }
+    }
+
+    fn shape(&self, solid: u32, leaf: u32) -> &Shape {
+        self.members[solid as usize].model.leaves[leaf as usize].shape()
+    }
+
+    /// From now on [`Scene::sample_part`] chooses points of a leaf on these faces only; their share of its object space area.
+    pub fn sample_only(&mut self, part: PartId, faces: Vec<u32>) -> f64 {
+        let PartKind::Leaf { solid, leaf } = self.parts[part.0 as usize].kind else { return 1.0 };
+        let shape = self.shape(solid, leaf);
+        let share = faces.iter().map(|&face| shape.face_area(face)).sum::<f64>() / shape.area();
+        self.faces.sample_only(part, faces);
+        share
     }
 
     /// World area of a part's whole surface; infinite when it is unbounded.
@@ -280,7 +308,7 @@ impl Scene {
         Some(result)
     }
 
-    /// A point uniform over the part's object space area, if it is on the boundary of the part's solid and its own there;
+    /// A point uniform over the part's object space area (or the faces given to [`Scene::sample_only`]), if it is on the boundary of the part's solid and its own there;
     /// its density is over the whole part, so that leaving out the others is unbiased. `choice` and `u` in [0, 1)
     /// are independent; `choice` picks the triangle of a mesh. `None` for unbounded parts too.
     pub fn sample_part(&self, part: PartId, choice: f64, u: [f64; 2]) -> Option<AreaSample> {
@@ -288,14 +316,19 @@ impl Scene {
             PartKind::Surface { surface } => {
                 let model = &self.surfaces()[surface as usize];
                 let point = model.sample(choice, u)?;
-                Some(area_sample(&point, point.n, 1.0 / model.area()))
+                let material = self.parts[part.0 as usize].material;
+                Some(area_sample(&point, point.n, 1.0 / model.area(), material))
             }
             PartKind::Leaf { solid, leaf } => {
-                let chosen = self.placed_leaf(solid, leaf)?.sample_area(u)?;
+                let placed = self.placed_leaf(solid, leaf)?;
+                let chosen = match self.faces.sampled(part) {
+                    None => placed.sample_area(u)?,
+                    Some(faces) => placed.sample_faces(faces, u)?,
+                };
                 let hit = self.boundary_at(part, solid, &chosen.point)?;
                 let point = SurfacePoint { p_error: chosen.point.p_error.max(hit.p_error), ..chosen.point };
                 let ng = if hit.ng.dot(point.n) < 0.0 { -point.n } else { point.n };
-                Some(area_sample(&point, ng, chosen.pdf_area))
+                Some(area_sample(&point, ng, chosen.pdf_area, hit.material))
             }
         }
     }
@@ -318,10 +351,17 @@ impl Scene {
     pub fn pdf_area(&self, hit: &Hit) -> f64 {
         match self.parts[hit.part.0 as usize].kind {
             PartKind::Surface { surface } => 1.0 / self.surfaces()[surface as usize].area(),
-            PartKind::Leaf { solid, leaf } => match &self.members[solid as usize].frame {
-                None => self.members[solid as usize].model.leaves[leaf as usize].pdf_area(hit.p, hit.ng),
-                Some(_) => self.placed_leaf(solid, leaf).map_or(0.0, |placed| placed.pdf_area(hit.p, hit.ng)),
-            },
+            PartKind::Leaf { solid, leaf } => {
+                let density = |placed: &Placed| match self.faces.sampled(hit.part) {
+                    None => placed.pdf_area(hit.p, hit.ng),
+                    Some(faces) if faces.contains(&hit.face) => placed.pdf_faces(faces, hit.ng),
+                    Some(_) => 0.0,
+                };
+                match &self.members[solid as usize].frame {
+                    None => density(&self.members[solid as usize].model.leaves[leaf as usize]),
+                    Some(_) => self.placed_leaf(solid, leaf).map_or(0.0, |placed| density(&placed)),
+                }
+            }
         }
     }
 
@@ -383,7 +423,7 @@ impl Scene {
             p_error: point.p_error + tie,
             ng: point.n * sign,
             ns: ns * sign,
-            material: self.parts[candidate.part as usize].material,
+            material: self.faces.material(self.parts[candidate.part as usize].material, face),
             part: PartId(candidate.part),
             face,
             closed,
@@ -508,6 +548,6 @@ fn is_traceable(ray: &Ray) -> bool {
     ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != DVec3::ZERO && ray.t_max > 0.0
 }
 
-fn area_sample(point: &SurfacePoint, ng: DVec3, pdf_area: f64) -> AreaSample {
-    AreaSample { p: point.p, p_error: point.p_error, ng, uv: point.uv, pdf_area }
+fn area_sample(point: &SurfacePoint, ng: DVec3, pdf_area: f64, material: MaterialIndex) -> AreaSample {
+    AreaSample { p: point.p, p_error: point.p_error, ng, uv: point.uv, pdf_area, material }
 }

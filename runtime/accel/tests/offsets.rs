@@ -175,7 +175,8 @@ fn coplanar_surfaces_do_not_fight() {
         let slab = one(Shape::Box { min: DVec3::new(-3.0, -3.0, 0.0), max: DVec3::new(3.0, 3.0, 1.0) }, map);
         for with_slab in [false, true] {
             let solids = if with_slab { vec![slab.clone()] } else { vec![] };
-            let geometry = SceneGeometry { solids, surfaces: vec![ceiling.clone(), lamp.clone()], instances: vec![] };
+            let geometry =
+                SceneGeometry { solids, surfaces: vec![ceiling.clone(), lamp.clone()], ..SceneGeometry::default() };
             for scene in scenes(geometry) {
                 for _ in 0..3000 {
                     let eye = map.transform_point3(DVec3::new(0.0, 0.0, -1.0) + vector(&mut rng).with_z(0.0) * 3.0);

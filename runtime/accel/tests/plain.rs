@@ -60,7 +60,7 @@ fn scene(seed: u64) -> SceneGeometry {
     }
     let shared = Arc::new(bitten(rng, 0.2));
     let instances = (0..6).map(|_| Instance { solid: shared.clone(), world_from_object: place(rng, 4.0) }).collect();
-    SceneGeometry { solids: vec![bitten(rng, 1.0), bitten(rng, 1.0)], surfaces, instances }
+    SceneGeometry { solids: vec![bitten(rng, 1.0), bitten(rng, 1.0)], surfaces, instances, faces: vec![] }
 }
 
 #[test]

@@ -268,7 +268,9 @@ fn surface_coordinates_on_demand() {
         world_from_object: DAffine3::IDENTITY,
         material: MaterialIndex(0),
     };
-    for scene in scenes(SceneGeometry { solids: vec![ball], instances: vec![instance], surfaces: vec![quad] }) {
+    for scene in
+        scenes(SceneGeometry { solids: vec![ball], instances: vec![instance], surfaces: vec![quad], faces: vec![] })
+    {
         for x in [0.0, 10.0] {
             let hit = scene.intersect(&Ray::new(DVec3::new(x, 3.0, 0.0), DVec3::NEG_Y)).unwrap();
             let at = scene.parametrize(&hit);

@@ -9,7 +9,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use arsc_accel::{Csg, CsgLeaf, Instance, MaterialIndex, SceneGeometry, Solid, Surface, SurfaceShape};
+use arsc_accel::{Csg, CsgLeaf, FaceMaterial, Instance, MaterialIndex, SceneGeometry, Solid, Surface, SurfaceShape};
 use arsc_ir::{Ir, Leaf, MaterialId, NodeId, NodeKind};
 use glam::DVec2;
 
@@ -26,6 +26,10 @@ pub fn lower(ir: &Ir) -> Result<SceneGeometry, AssemblyError> {
         ir.materials.get(surface.material.0 as usize).is_some_and(|material| material.emitter.is_some())
     };
     geometry.surfaces.sort_by_key(emits);
+    for (base, material) in (0..).map(MaterialIndex).zip(&ir.materials) {
+        let other = |&(face, id): &(u32, MaterialId)| FaceMaterial { base, face, material: MaterialIndex(id.0) };
+        geometry.faces.extend(material.faces.iter().map(other));
+    }
     Ok(geometry)
 }
 

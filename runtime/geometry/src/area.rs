@@ -129,6 +129,25 @@ impl Placed {
         Some(AreaPoint { point, face, pdf_area: self.pdf_area(point.p, point.n) })
     }
 
+    /// A point uniform over some of the faces in object space; `None` for unbounded shapes and for faces without area.
+    pub fn sample_faces(&self, faces: &[u32], u: [f64; 2]) -> Option<AreaPoint> {
+        let areas = AreaTable::new(faces.iter().map(|&face| self.shape().face_area(face)));
+        if !(areas.total() > 0.0 && areas.total().is_finite()) {
+            return None;
+        }
+        let (i, rest) = areas.choose(u[0]);
+        let face = faces[i];
+        let p = self.shape().sample_face(face, [rest, u[1]])?;
+        let point = self.surface(self.world_from_object().transform_point3(p), face);
+        Some(AreaPoint { point, face, pdf_area: self.pdf_faces(faces, point.n) })
+    }
+
+    /// Density with which [`Placed::sample_faces`] gives a point of these faces with its outward or inward unit normal.
+    pub fn pdf_faces(&self, faces: &[u32], world_normal: DVec3) -> f64 {
+        let area: f64 = faces.iter().map(|&face| self.shape().face_area(face)).sum();
+        1.0 / (area * self.area_scale(world_normal))
+    }
+
     /// Density with which [`Placed::sample_area`] gives a surface point with its outward or inward unit normal; zero
     /// for unbounded shapes.
     pub fn pdf_area(&self, p: DVec3, world_normal: DVec3) -> f64 {

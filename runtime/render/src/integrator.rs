@@ -195,12 +195,12 @@ impl<'a> Event<'a> {
     ) -> Option<P::Stokes> {
         let (source, probability, rest) = world.choose_light(choice)?;
         let (ray, light, pdf) = match source {
-            LightSource::Part { part, material } => {
+            LightSource::Part { part, .. } => {
                 let sample = world.geometry.sample_part(part, rest, u)?;
                 let to_light = sample.p - self.hit.p;
                 let distance2 = to_light.length_squared();
                 let wi = to_light / distance2.sqrt();
-                let radiance = world.emitter(material)?.radiance::<P>(-wi, sample.ng, wavelengths);
+                let radiance = world.emitter(sample.material.0)?.radiance::<P>(-wi, sample.ng, wavelengths);
                 if radiance.intensity().is_black() {
                     return None;
                 }

@@ -5,7 +5,7 @@
 //! choices are uniform, so that a dim light close by is not starved. Emissive parts of unbounded area are hit by
 //! scattered rays only.
 
-use arsc_accel::{Hit, PartId, Scene};
+use arsc_accel::{Hit, Part, PartId, Scene};
 
 use crate::bsdf::Bsdf;
 use crate::emitter::AreaEmitter;
@@ -54,7 +54,9 @@ impl World {
         lights: Vec<Light>,
         environments: Vec<Environment>,
     ) -> World {
-        let needed = geometry.parts().iter().map(|part| part.material.0 as usize + 1).max().unwrap_or(0);
+        let faces = |i: usize| geometry.face_materials(PartId(i as u32)).iter().map(|(_, material)| *material);
+        let shown = |(i, part): (usize, &Part)| faces(i).chain([part.material]).map(|m| m.0 as usize + 1).max();
+        let needed = geometry.parts().iter().enumerate().filter_map(shown).max().unwrap_or(0);
         materials.resize_with(materials.len().max(needed), Material::default);
         let mut world = World {
             part_probability: vec![0.0; geometry.parts().len()],
@@ -74,10 +76,11 @@ impl World {
 
     fn collect_sources(&mut self) {
         let mut found = Vec::new();
-        for (i, part) in self.geometry.parts().iter().enumerate() {
-            if let Some(emitter) = &self.materials[part.material.0 as usize].emitter {
-                let power = emitter.exitance() * self.geometry.part_area(PartId(i as u32));
-                found.push((LightSource::Part { part: PartId(i as u32), material: part.material.0 }, power));
+        for i in 0..self.geometry.parts().len() {
+            let part = PartId(i as u32);
+            if let Some(power) = self.part_power(part) {
+                let material = self.geometry.parts()[i].material.0;
+                found.push((LightSource::Part { part, material }, power));
             }
         }
         let radius = self.scene_radius();
@@ -88,6 +91,27 @@ impl World {
         // What is dark or unbounded cannot be sampled by power.
         found.retain(|(_, power)| *power > 0.0 && power.is_finite());
         (self.sources, self.powers) = found.into_iter().unzip();
+    }
+
+    /// Power that a part emits; `None` if it is no lamp. Where only some of its faces emit, only they are sampled.
+    fn part_power(&mut self, part: PartId) -> Option<f64> {
+        let exitance = |material: u32| self.materials[material as usize].emitter.as_ref().map(AreaEmitter::exitance);
+        let base = exitance(self.geometry.parts()[part.0 as usize].material.0);
+        let others: Vec<(u32, Option<f64>)> =
+            self.geometry.face_materials(part).iter().map(|&(face, material)| (face, exitance(material.0))).collect();
+        let area = self.geometry.part_area(part);
+        if others.is_empty() {
+            return base.map(|exitance| exitance * area);
+        }
+        let on_face = |face: u32| others.iter().find(|other| other.0 == face).map_or(base, |other| other.1);
+        let lit: Vec<(u32, f64)> =
+            (0..self.geometry.face_count(part)).filter_map(|face| Some((face, on_face(face)?))).collect();
+        if lit.is_empty() {
+            return None;
+        }
+        let mean = lit.iter().map(|(_, exitance)| exitance).sum::<f64>() / lit.len() as f64;
+        let share = self.geometry.sample_only(part, lit.into_iter().map(|(face, _)| face).collect());
+        Some(mean * share * area)
     }
 
     fn choose_probabilities(&mut self) {

@@ -70,7 +70,10 @@ impl<'a> Survey<'a> {
     /// A leaf that emits.
     pub fn emits(&self, id: NodeId) -> bool {
         match self.ir.kind(id) {
-            NodeKind::Leaf(leaf) => self.material(leaf).is_some_and(|material| material.emitter.is_some()),
+            NodeKind::Leaf(leaf) => self.material(leaf).is_some_and(|material| {
+                let shown = material.faces.iter().map(|(_, id)| &self.ir.materials[id.0 as usize]);
+                shown.chain([material]).any(|material| material.emitter.is_some())
+            }),
             _ => false,
         }
     }

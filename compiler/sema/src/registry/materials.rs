@@ -37,6 +37,15 @@ fn attaching() -> Vec<Builtin> {
             .runs(Var(0), |m, args, site| attach(m, args, Precedence::Inner, site)),
         on("override", "Attaches from outside: wins over everything that the parts have.")
             .runs(Var(0), |m, args, site| attach(m, args, Precedence::Outer, site)),
+        Builtin::new(
+            "with_face",
+            "Attaches a bsdf or an emitter to one face of a primitive, or of all primitives in a solid: it wins there over \
+             what `with` gives the whole. The descriptions of the solids number their faces.",
+        )
+        .param(Param::new("solid", Solid, "what it applies to"))
+        .param(Param::new("face", Type::Int, "number of the face, from 0").non_negative())
+        .variadic(Param::new("attributes", Type::AnyOf(Class::Attribute), "bsdfs, emitters, or lists of them"))
+        .runs(Solid, with_face),
         Builtin::new("cut_with", "Covers the walls that other solids cut into this one by subtraction.")
             .param(Param::new("solid", Solid, "solid that will be cut"))
             .param(Param::new("bsdf", Type::Bsdf, "what covers the walls"))
@@ -70,6 +79,40 @@ fn attach(m: &mut Machine<'_>, args: &[Value], precedence: Precedence, site: &Si
         return Ok(args[0].clone());
     }
     apply(m, &args[0], bundle, precedence, site)
+}
+
+fn with_face(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
+    let mut bundle = Attributes::default();
+    merge(m, &args[2], &mut bundle, site)?;
+    if bundle.medium.is_some() {
+        let message = "a medium fills a solid, not one of its faces";
+        return Err(Box::new(site.fail(codes::CONFLICTING_ATTRIBUTES, message).help("attach it by `with`")));
+    }
+    let face = u32::try_from(args[1].as_int()).unwrap_or(u32::MAX);
+    if let Some(count) = face_count(m, args[0].as_node())
+        && face >= count
+    {
+        let label = if count == 1 { "has one face, 0".to_owned() } else { format!("faces go from 0 to {}", count - 1) };
+        return Err(site.fail_arg(1, codes::OUT_OF_RANGE, "this solid has no such face", label));
+    }
+    if bundle == Attributes::default() {
+        return Ok(args[0].clone());
+    }
+    apply(m, &args[0], Attributes { face: Some(face), ..bundle }, Precedence::Inner, site)
+}
+
+/// Number of faces of a primitive, placed and covered or not.
+fn face_count(m: &Machine<'_>, mut node: NodeId) -> Option<u32> {
+    loop {
+        match &m.nodes[node.index()].kind {
+            NodeKind::Transform { child, .. } | NodeKind::Attributes { child, .. } => node = *child,
+            NodeKind::Leaf(leaf) => match &**leaf {
+                Leaf::Solid { shape, .. } => return Some(shape.face_count()),
+                Leaf::Surface { .. } => return None,
+            },
+            _ => return None,
+        }
+    }
 }
 
 /// Collects nested lists of attributes into one bundle.

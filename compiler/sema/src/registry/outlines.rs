@@ -15,7 +15,7 @@ use crate::value::Value;
 
 pub fn builtins() -> Vec<Builtin> {
     vec![
-        Builtin::new("prism", "A polygon in the plane z = 0, extruded to z = `height`. No edge may touch another.")
+        Builtin::new("prism", "A polygon in the plane z = 0, extruded to z = `height`. No edge may touch another. Faces: 0 bottom, 1 top, then the sides in the order of the corners that they begin at, those of holes last.")
             .param(Param::new(
                 "polygon",
                 Type::list(Vec2),
@@ -30,13 +30,14 @@ pub fn builtins() -> Vec<Builtin> {
         Builtin::new(
             "lathe",
             "A solid of revolution: a profile of points (radius, z), turned about the z axis. Its ends are joined to the \
-             axis by lines of constant z, or to each other if `closed`.",
+             axis by lines of constant z, or to each other if `closed`. Faces: the segments of the profile in order, then the disk at the \
+             last point and that at the first.",
         )
         .param(Param::new("profile", Type::list(Vec2), "points (radius, z), up or down; radii are not negative"))
         .param(Param::new("closed", Bool, "join the last point to the first: a ring of this section").bool(false))
         .param(Param::new("smooth", Bool, "a cubic spline (Catmull-Rom) through the points").bool(false))
         .runs(Solid, lathe),
-        Builtin::new("polyhedron", "The convex hull of points. Points in one plane make one face.")
+        Builtin::new("polyhedron", "The convex hull of points. Points in one plane make one face; faces are in the order of their lowest point numbers.")
             .param(Param::new("points", Type::list(Point), "four or more, not all in one plane"))
             .runs(Solid, polyhedron),
     ]

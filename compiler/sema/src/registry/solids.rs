@@ -32,14 +32,14 @@ pub fn builtins() -> Vec<Builtin> {
 fn round() -> Vec<Builtin> {
     let center = || Param::new("center", Point, "centre").vec3([0.0; 3]);
     vec![
-        solid("sphere", "A ball.")
+        solid("sphere", "A ball. One face.")
             .param(Param::new("radius", Float, "radius").float(1.0).positive())
             .param(center())
             .runs(Solid, |m, args, site| {
                 let map = DAffine3::from_translation(args[1].as_vec3());
                 m.solid(Shape::Sphere { radius: args[0].as_float() }, map, site)
             }),
-        solid("ellipsoid", "An ellipsoid with its axes along x, y and z.")
+        solid("ellipsoid", "An ellipsoid with its axes along x, y and z. One face.")
             .param(Param::new("radii", Vec3, "half axes").positive())
             .param(center())
             .runs(Solid, |m, args, site| {
@@ -49,7 +49,8 @@ fn round() -> Vec<Builtin> {
             }),
         solid(
             "cylinder",
-            "A cylinder about the z axis, from z = 0 to z = `height`; a truncated cone if `top_radius` is given.",
+            "A cylinder about the z axis, from z = 0 to z = `height`; a truncated cone if `top_radius` is given. \
+             Faces: 0 side, 1 bottom, 2 top.",
         )
         .param(Param::new("radius", Float, "radius").float(1.0).positive())
         .param(Param::new("height", Float, "height").float(1.0).positive())
@@ -62,19 +63,19 @@ fn round() -> Vec<Builtin> {
             };
             m.solid(shape, DAffine3::IDENTITY, site)
         }),
-        solid("infinite_cylinder", "A cylinder about the z axis without ends. Unbounded: intersect it with something.")
+        solid("infinite_cylinder", "A cylinder about the z axis without ends. Unbounded: intersect it with something. One face.")
             .param(Param::new("radius", Float, "radius").float(1.0).positive())
             .runs(Solid, |m, args, site| {
                 m.solid(Shape::InfiniteCylinder { radius: args[0].as_float() }, DAffine3::IDENTITY, site)
             }),
-        solid("cone", "A cone about the z axis, from z = 0 to z = `height`; truncated if `top_radius` is not 0.")
+        solid("cone", "A cone about the z axis, from z = 0 to z = `height`; truncated if `top_radius` is not 0. Faces: 0 side, 1 bottom, 2 top.")
             .param(Param::new("radius", Float, "radius at the base").float(1.0).non_negative())
             .param(Param::new("height", Float, "height").float(1.0).positive())
             .param(Param::new("top_radius", Float, "radius at the top").float(0.0).non_negative())
             .runs(Solid, cone),
         solid(
             "torus",
-            "A torus about the z axis: ring, horn (`minor` = `major`) or spindle (`minor` > `major`, filled).",
+            "A torus about the z axis: ring, horn (`minor` = `major`) or spindle (`minor` > `major`, filled). One face.",
         )
         .param(Param::new("major", Float, "radius of the centre circle").float(1.0).positive())
         .param(Param::new("minor", Float, "radius of the tube").float(0.25).positive())
@@ -109,7 +110,7 @@ fn quadrics() -> Vec<Builtin> {
     vec![
         solid(
             "paraboloid",
-            "A bowl of parabolic section about the z axis: vertex at the origin, closed by a disk at z = `height`.",
+            "A bowl of parabolic section about the z axis: vertex at the origin, closed by a disk at z = `height`. Faces: 0 side, 2 top.",
         )
         .param(Param::new("radius", Float, "radius at the top").float(1.0).positive())
         .param(Param::new("height", Float, "height").float(1.0).positive())
@@ -124,7 +125,8 @@ fn quadrics() -> Vec<Builtin> {
             "hyperboloid",
             "A hyperboloid of revolution about the z axis, centred at the origin and cut off at z = ± `height` / 2. One \
              sheet: x² + y² <= (`slope` z)² + `radius`², a column with a waist. Two sheets: x² + y² <= (`slope` z)² - \
-             `radius`², two bowls with their vertices at z = ± `radius` / `slope`.",
+             `radius`², two bowls with their vertices at z = ± `radius` / `slope`. Faces: 0 side, \
+             1 bottom, 2 top.",
         )
         .param(Param::new("radius", Float, "radius of the waist; sets the gap of two sheets").float(1.0).positive())
         .param(Param::new("height", Float, "height").float(2.0).positive())
@@ -134,7 +136,7 @@ fn quadrics() -> Vec<Builtin> {
         solid(
             "superquadric",
             "A superellipsoid: (|x|^(2/`e2`) + |y|^(2/`e2`))^(`e2`/`e1`) + |z|^(2/`e1`) <= 1 in units of the half axes. \
-             Exponents near 0 make boxes, 1 is round, 2 flat, beyond 2 pinched.",
+             Exponents near 0 make boxes, 1 is round, 2 flat, beyond 2 pinched. One face.",
         )
         .param(Param::new("radii", Vec3, "half axes").vec3([1.0; 3]).positive())
         .param(exponent("e1", "exponent from pole to pole"))
@@ -170,7 +172,7 @@ fn hyperboloid(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval {
 
 fn flat() -> Vec<Builtin> {
     vec![
-        solid("box", "A box with faces parallel to the axes: by `size`, or by two opposite corners `min` and `max`.")
+        solid("box", "A box with faces parallel to the axes: by `size`, or by two opposite corners `min` and `max`. Faces: 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z.")
             .param(Param::new("size", Vec3, "edge lengths; (1, 1, 1) if no corner is given").optional().positive())
             .param(
                 Param::new(
@@ -183,11 +185,11 @@ fn flat() -> Vec<Builtin> {
             .param(Param::new("min", Point, "smallest corner").optional())
             .param(Param::new("max", Point, "largest corner").optional())
             .runs(Solid, block),
-        solid("cube", "A cube with faces parallel to the axes.")
+        solid("cube", "A cube with faces parallel to the axes, numbered as those of a box.")
             .param(Param::new("size", Float, "edge length").float(1.0).positive())
             .param(Param::new("center", Bool, "centred at the origin; else the smallest corner is there").bool(true))
             .runs(Solid, |m, args, site| sized_box(m, DVec3::splat(args[0].as_float()), args[1].as_bool(), site)),
-        solid("half_space", "All points p with dot(p, `normal`) <= `offset`: the normal points out. Unbounded.")
+        solid("half_space", "All points p with dot(p, `normal`) <= `offset`: the normal points out. Unbounded. One face.")
             .param(Param::new("normal", Vec3, "out of the solid; any length but 0").vec3([0.0, 0.0, 1.0]))
             .param(Param::new("offset", Float, "distance of the plane from the origin along the normal").float(0.0))
             .runs(Solid, |m, args, site| {
