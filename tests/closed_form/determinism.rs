@@ -24,7 +24,7 @@ fn scene() -> (World, Camera) {
 }
 
 fn settings(samples: u32) -> PathTraceSettings {
-    PathTraceSettings { samples, max_depth: 8, seed: 7, crop: None, bands: Bands::default(), polarised: false }
+    PathTraceSettings { samples, max_depth: 8, seed: 7, ..PathTraceSettings::default() }
 }
 
 fn on_threads(threads: usize, samples: u32, progress: &dyn Progress) -> Film {

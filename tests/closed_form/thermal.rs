@@ -1,10 +1,10 @@
 //! Emission seen directly.
 
-use arsc_render::Environment;
-use arsc_spectral::{Spectrum, planck};
+use arsc_render::{Bands, Bsdf, Environment, Material, PathTraceSettings, path_trace};
+use arsc_spectral::{Observer, Spectrum, WavelengthRange, planck};
 use glam::DVec3;
 
-use super::support::{Stage, band_means, camera, emitter, render};
+use super::support::{Stage, band_means, camera, constant, emitter, render};
 
 /// Mean of Planck's law over a band.
 fn band_planck(edges: &[f64], kelvin: f64) -> f64 {
@@ -44,4 +44,45 @@ fn d65_has_its_white_point_in_the_picture() {
     let [x, y] = arsc_spectral::chromaticity(sum);
     assert!((x - 0.3127).abs() < 1e-3 && (y - 0.3290).abs() < 1e-3, "x = {x}, y = {y}");
     assert!((sum[1] / (683.0 * 106.857) - 1.0).abs() < 1e-3, "Y = {}", sum[1]);
+}
+
+/// The same over other ranges and bands, the near ultraviolet and infrared included; and through strongly dispersive glass
+/// inside a white furnace, where all wavelengths but the hero are dropped on the way, every band keeps its radiance. Bands of
+/// the glowing sphere as above. In the furnace the light is the same in all directions: a path gives it in each wavelength
+/// that it kept, times four after dispersion, so that a band's some 500 samples of mean 1 have a standard deviation below
+/// sqrt(3), their ratio of sums below 0.08; 5 standard errors of the mean of 47 bands stay below 0.06 (false alarm 6e-7).
+#[test]
+fn any_range_of_wavelengths_is_rendered_without_bias() {
+    let view = camera(DVec3::new(0.0, -2.0, 0.0), DVec3::ZERO, 0.1, 16);
+    for (min, max, band_nm, observer) in [
+        (300.0, 830.0, 10.0, Observer::Cie1931),
+        (380.0, 700.0, 40.0, Observer::Cie2015Deg10),
+        (850.0, 1100.0, 25.0, Observer::Cie1931),
+    ] {
+        let wavelengths = WavelengthRange::new(min, max).unwrap();
+        let bands = Bands::over(&wavelengths, band_nm, observer);
+        let settings =
+            PathTraceSettings { samples: 256, max_depth: 0, wavelengths, bands, ..PathTraceSettings::default() };
+        let mut stage = Stage::default();
+        stage.sphere(DVec3::ZERO, 1.0, emitter(Spectrum::Blackbody { kelvin: 4000.0 }));
+        let mut world = stage.build();
+        world.weigh_lights(&wavelengths);
+        let image = path_trace(&world, &view, &settings, &()).to_image();
+        assert_eq!((image.band_edges_nm[0], *image.band_edges_nm.last().unwrap()), (min, max));
+        for (mean, edges) in band_means(&image).iter().zip(image.band_edges_nm.windows(2)) {
+            let exact = band_planck(edges, 4000.0);
+            assert!((mean / exact - 1.0).abs() < 3e-3, "{edges:?} nm: {mean} instead of {exact}");
+        }
+
+        let mut stage = Stage::default();
+        let glass = Bsdf::dielectric(&Spectrum::Cauchy { a: 1.5, b_um2: 0.02, c_um4: 0.0 });
+        stage.sphere(DVec3::ZERO, 1.0, Material { bsdf: glass, emitter: None });
+        stage.environments.push(Environment::constant(&constant(1.0)));
+        let settings = PathTraceSettings { max_depth: 100, ..settings };
+        let image = path_trace(&stage.build(), &view, &settings, &()).to_image();
+        let means = band_means(&image);
+        let mean = means.iter().sum::<f64>() / means.len() as f64;
+        assert!((mean - 1.0).abs() < 0.02, "{min} to {max} nm: {mean}");
+        assert!(means.iter().all(|band| (band - 1.0).abs() < 0.06), "{min} to {max} nm: {means:?}");
+    }
 }

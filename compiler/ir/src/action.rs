@@ -1,5 +1,7 @@
 //! Actions: what is done with the scene. Stack effects were checked by the compiler.
 
+use arsc_spectral::{Observer, WavelengthRange};
+
 /// How CSG is traced; all give the same picture (docs/csg.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Strategy {
@@ -52,6 +54,35 @@ pub enum Exposure {
     Ev(f64),
 }
 
+/// What `path_trace` is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathTrace {
+    /// Camera paths per pixel.
+    pub samples: u32,
+    pub max_depth: u32,
+    pub seed: u64,
+    pub wavelengths: WavelengthRange,
+    /// Width of the picture's bands, nm; positive.
+    pub band_nm: f64,
+    pub observer: Observer,
+    /// Keep track of polarisation.
+    pub polarised: bool,
+}
+
+impl Default for PathTrace {
+    fn default() -> PathTrace {
+        PathTrace {
+            samples: 64,
+            max_depth: 20,
+            seed: 0,
+            wavelengths: WavelengthRange::VISIBLE,
+            band_nm: 10.0,
+            observer: Observer::Cie1931,
+            polarised: false,
+        }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// `scene → scene`: names the strategy for what follows.
@@ -63,13 +94,7 @@ pub enum Action {
     /// `scene → scene`: prints the light sources and their powers.
     CollectLights,
     /// `scene → scene image<spectral>`
-    PathTrace {
-        samples: u32,
-        max_depth: u32,
-        seed: u64,
-        /// Keep track of polarisation.
-        polarised: bool,
-    },
+    PathTrace(PathTrace),
     /// `image<spectral> → image<display>`
     ToneMap {
         exposure: Exposure,

@@ -105,13 +105,16 @@ impl Display for Text<'_, Spectrum> {
                 .float("sigma_nm", *sigma_nm)?
                 .float("peak", *peak)?
                 .end(),
-            Spectrum::Sellmeier { b, c_um2 } => {
-                Call::new(f, "sellmeier")?.arg("b", Floats(b))?.arg("c_um2", Floats(c_um2))?.end()
+            Spectrum::Sellmeier { a, b, c_um2 } => {
+                Call::new(f, "sellmeier")?.float("a", *a)?.arg("b", Floats(b))?.arg("c_um2", Floats(c_um2))?.end()
             }
             Spectrum::Cauchy { a, b_um2, c_um4 } => {
                 Call::new(f, "cauchy")?.float("a", *a)?.float("b_um2", *b_um2)?.float("c_um4", *c_um4)?.end()
             }
             Spectrum::Sigmoid { coefficients } => Call::new(f, "sigmoid")?.value(Floats(coefficients))?.end(),
+            Spectrum::Absorbance { transmission, thickness } => {
+                Call::new(f, "absorbance")?.value(Text(&**transmission))?.float("thickness", *thickness)?.end()
+            }
             Spectrum::Scaled { factor, spectrum } => {
                 Call::new(f, "scaled")?.value(Float(*factor))?.value(Text(&**spectrum))?.end()
             }
@@ -347,11 +350,14 @@ impl Display for Text<'_, Action> {
             Action::Accelerate { strategy } => Call::new(f, "accelerate")?.arg("strategy", strategy.name())?.end(),
             Action::BoundingBoxes => f.write_str("bounding_boxes()"),
             Action::CollectLights => f.write_str("collect_lights()"),
-            Action::PathTrace { samples, max_depth, seed, polarised } => Call::new(f, "path_trace")?
-                .arg("samples", samples)?
-                .arg("max_depth", max_depth)?
-                .arg("seed", seed)?
-                .arg("polarised", polarised)?
+            Action::PathTrace(trace) => Call::new(f, "path_trace")?
+                .arg("samples", trace.samples)?
+                .arg("max_depth", trace.max_depth)?
+                .arg("seed", trace.seed)?
+                .arg("wavelengths", Floats(&[trace.wavelengths.min_nm(), trace.wavelengths.max_nm()]))?
+                .float("band_nm", trace.band_nm)?
+                .arg("observer", trace.observer.name())?
+                .arg("polarised", trace.polarised)?
                 .end(),
             Action::ToneMap { exposure: Exposure::Auto } => f.write_str("tone_map(exposure: auto)"),
             Action::ToneMap { exposure: Exposure::Ev(ev) } => Call::new(f, "tone_map")?.float("exposure", *ev)?.end(),

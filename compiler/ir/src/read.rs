@@ -8,15 +8,15 @@ use std::sync::Arc;
 
 use arsc_diagnostics::{SourceId, Span};
 use arsc_geometry::{ClosedMesh, DVec3, Shape, TriangleMesh};
-use arsc_spectral::Spectrum;
+use arsc_spectral::{Observer, Spectrum, WavelengthRange};
 
 use crate::args::{Args, float, float_list, floats, index, integer};
 use crate::shape_text::shape;
 use crate::term::{Cursor, Fault, Term, TermKind};
 use crate::{
     Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Density, Distribution, Emitter, Environment, Exposure, Facets,
-    Filter, Ir, Leaf, Light, Material, MaterialId, Medium, Node, NodeId, NodeKind, PhaseFunction, Precedence,
-    Projection, Strategy, Surface,
+    Filter, Ir, Leaf, Light, Material, MaterialId, Medium, Node, NodeId, NodeKind, PathTrace, PhaseFunction,
+    Precedence, Projection, Strategy, Surface,
 };
 
 /// Why a text is no IR; one-based position, the column counted in characters.
@@ -176,9 +176,16 @@ fn spectrum(term: Term) -> Result<Spectrum, Fault> {
             sigma_nm: args.float("sigma_nm")?,
             peak: args.float("peak")?,
         },
-        "sellmeier" => Spectrum::Sellmeier { b: floats(&args.take("b")?)?, c_um2: floats(&args.take("c_um2")?)? },
+        "sellmeier" => {
+            let (a, b) = (args.float("a")?, float_list(&args.take("b")?)?.into());
+            Spectrum::Sellmeier { a, b, c_um2: float_list(&args.take("c_um2")?)?.into() }
+        }
         "cauchy" => Spectrum::Cauchy { a: args.float("a")?, b_um2: args.float("b_um2")?, c_um4: args.float("c_um4")? },
         "sigmoid" => Spectrum::Sigmoid { coefficients: floats(&args.next()?)? },
+        "absorbance" => Spectrum::Absorbance {
+            transmission: Arc::new(spectrum(args.next()?)?),
+            thickness: args.float("thickness")?,
+        },
         "scaled" => Spectrum::Scaled { factor: float(&args.next()?)?, spectrum: Arc::new(spectrum(args.next()?)?) },
         "product" => Spectrum::Product(Arc::new(spectrum(args.next()?)?), Arc::new(spectrum(args.next()?)?)),
         "sum" => Spectrum::Sum(Arc::new(spectrum(args.next()?)?), Arc::new(spectrum(args.next()?)?)),
@@ -442,12 +449,15 @@ fn action(term: Term) -> Result<Action, Fault> {
         "accelerate" => Action::Accelerate { strategy: strategy(&args.take("strategy")?)? },
         "bounding_boxes" => Action::BoundingBoxes,
         "collect_lights" => Action::CollectLights,
-        "path_trace" => Action::PathTrace {
+        "path_trace" => Action::PathTrace(PathTrace {
             samples: args.integer("samples")?,
             max_depth: args.integer("max_depth")?,
             seed: args.integer("seed")?,
+            wavelengths: wavelengths(&args.take("wavelengths")?)?,
+            band_nm: args.float("band_nm")?,
+            observer: observer(&args.take("observer")?)?,
             polarised: args.boolean("polarised")?,
-        },
+        }),
         "tone_map" => {
             let exposure = args.take("exposure")?;
             let exposure = match exposure.kind {
@@ -477,6 +487,19 @@ fn strategy(term: &Term) -> Result<Strategy, Fault> {
         let names = Strategy::ALL.map(|strategy| format!("`{}`", strategy.name())).join(", ");
         (term.offset, format!("expected one of {names}"))
     })
+}
+
+fn wavelengths(term: &Term) -> Result<WavelengthRange, Fault> {
+    let [min_nm, max_nm] = floats(term)?;
+    WavelengthRange::new(min_nm, max_nm).ok_or_else(|| (term.offset, "no range of wavelengths".to_owned()))
+}
+
+fn observer(term: &Term) -> Result<Observer, Fault> {
+    let found = match term.kind {
+        TermKind::Word(word) => Observer::ALL.into_iter().find(|observer| observer.name() == word),
+        _ => None,
+    };
+    found.ok_or_else(|| (term.offset, "expected an observer".to_owned()))
 }
 
 #[cfg(test)]
@@ -510,8 +533,10 @@ mod tests {
                 sigma_nm,
                 peak
             }),
-            ([number(), number(), number()], [number(), number(), number()])
-                .prop_map(|(b, c_um2)| Spectrum::Sellmeier { b, c_um2 }),
+            (number(), prop::collection::vec((number(), number()), 1..5)).prop_map(|(a, terms)| {
+                let (b, c_um2): (Vec<f64>, Vec<f64>) = terms.into_iter().unzip();
+                Spectrum::Sellmeier { a, b: b.into(), c_um2: c_um2.into() }
+            }),
             (number(), number(), number()).prop_map(|(a, b_um2, c_um4)| Spectrum::Cauchy { a, b_um2, c_um4 }),
             [number(), number(), number()].prop_map(|coefficients| Spectrum::Sigmoid { coefficients }),
             prop::collection::vec(number(), 1..5).prop_map(|values| Spectrum::Tabulated {
@@ -523,6 +548,10 @@ mod tests {
             prop_oneof![
                 (number(), inner.clone())
                     .prop_map(|(factor, spectrum)| Spectrum::Scaled { factor, spectrum: Arc::new(spectrum) }),
+                (positive(), inner.clone()).prop_map(|(thickness, transmission)| Spectrum::Absorbance {
+                    transmission: Arc::new(transmission),
+                    thickness
+                }),
                 (inner.clone(), inner.clone()).prop_map(|(a, b)| Spectrum::Product(Arc::new(a), Arc::new(b))),
                 (inner.clone(), inner).prop_map(|(a, b)| Spectrum::Sum(Arc::new(a), Arc::new(b))),
             ]
@@ -683,7 +712,18 @@ mod tests {
                     filter: Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 },
                 });
                 let at = Span::new(SourceId(0), 3, 9);
-                b.action(Action::PathTrace { samples: numbers[2], max_depth: 3, seed: u64::MAX, polarised: true }, at);
+                let wavelengths = WavelengthRange::new(300.0, 777.5).unwrap();
+                let (band_nm, observer) = (tables.2, Observer::Cie2015Deg10);
+                let trace = PathTrace {
+                    samples: numbers[2],
+                    max_depth: 3,
+                    seed: u64::MAX,
+                    wavelengths,
+                    band_nm,
+                    observer,
+                    polarised: true,
+                };
+                b.action(Action::PathTrace(trace), at);
                 b.action(Action::ToneMap { exposure: Exposure::Ev(tables.2) }, at);
                 b.action(Action::WritePng { path: "a \"quoted\\\" \u{1} path.png".to_owned() }, at);
                 b.finish(last)

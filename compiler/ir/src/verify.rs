@@ -9,8 +9,8 @@ use arsc_geometry::{DVec3, invert};
 use arsc_spectral::Spectrum;
 
 use crate::{
-    Attributes, Bsdf, Camera, CutRule, Density, Environment, Facets, Ir, Leaf, Light, Material, MaterialId, Medium,
-    NodeId, NodeKind, PhaseFunction, Projection, Surface,
+    Action, Attributes, Bsdf, Camera, CutRule, Density, Environment, Facets, Ir, Leaf, Light, Material, MaterialId,
+    Medium, NodeId, NodeKind, PhaseFunction, Projection, Surface,
 };
 
 /// Spectra nest at most this deep, so that everybody may recurse into them.
@@ -59,6 +59,12 @@ pub fn verify(ir: &Ir) -> Result<(), Vec<Violation>> {
     }
     if ir.root.index() >= ir.nodes.len() {
         found.check(Err("there is no such node"), || format!("root %{}", ir.root.0));
+    }
+    for (i, at) in ir.actions.iter().enumerate() {
+        if let Action::PathTrace(trace) = &at.action {
+            let bands = require(positive(trace.band_nm), "the width of the bands is not positive and finite");
+            found.check(bands, || format!("action {i}"));
+        }
     }
     if let Some(camera) = &ir.camera {
         found.check(check_camera(camera), || "camera".to_owned());
@@ -285,11 +291,18 @@ fn check_spectrum_at(spectrum: &Spectrum, depth: usize) -> Check {
             require(*sigma_nm > 0.0, "the width of a spectrum is not positive")?;
             finite(&[*center_nm, *sigma_nm, *peak])
         }
-        Spectrum::Sellmeier { b, c_um2 } => finite(b).and(finite(c_um2)),
+        Spectrum::Sellmeier { a, b, c_um2 } => {
+            require(b.len() == c_um2.len(), "a Sellmeier formula has columns of unlike length")?;
+            finite(&[*a]).and(finite(b)).and(finite(c_um2))
+        }
         Spectrum::Cauchy { a, b_um2, c_um4 } => finite(&[*a, *b_um2, *c_um4]),
         // Infinite coefficients stand for black and white.
         Spectrum::Sigmoid { coefficients } => {
             require(coefficients.iter().all(|x| !x.is_nan()), "a spectrum is not a number")
+        }
+        Spectrum::Absorbance { transmission, thickness } => {
+            require(positive(*thickness), "the thickness of an absorbance is not positive and finite")?;
+            check_spectrum_at(transmission, depth + 1)
         }
         Spectrum::Scaled { factor, spectrum } => finite(&[*factor]).and(check_spectrum_at(spectrum, depth + 1)),
         Spectrum::Product(a, b) | Spectrum::Sum(a, b) => {

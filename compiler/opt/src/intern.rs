@@ -69,13 +69,15 @@ impl Structural for Spectrum {
             }
             Spectrum::Blackbody { kelvin } => hash_f64(*kelvin, hasher),
             Spectrum::Gaussian { center_nm, sigma_nm, peak } => hash_all(&[*center_nm, *sigma_nm, *peak], hasher),
-            Spectrum::Sellmeier { b, c_um2 } => {
+            Spectrum::Sellmeier { a, b, c_um2 } => {
+                hash_f64(*a, hasher);
                 hash_all(b, hasher);
                 hash_all(c_um2, hasher);
             }
             Spectrum::Cauchy { a, b_um2, c_um4 } => hash_all(&[*a, *b_um2, *c_um4], hasher),
             Spectrum::Sigmoid { coefficients } => hash_all(coefficients, hasher),
             // One level is enough: the rest is compared.
+            Spectrum::Absorbance { thickness, .. } => hash_f64(*thickness, hasher),
             Spectrum::Scaled { factor, .. } => hash_f64(*factor, hasher),
             Spectrum::Product(..) | Spectrum::Sum(..) => {}
         }

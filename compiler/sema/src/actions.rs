@@ -32,7 +32,7 @@ fn name(action: &Action) -> &'static str {
         Action::Accelerate { .. } => "accelerate",
         Action::BoundingBoxes => "bounding_boxes",
         Action::CollectLights => "collect_lights",
-        Action::PathTrace { .. } => "path_trace",
+        Action::PathTrace(_) => "path_trace",
         Action::ToneMap { .. } => "tone_map",
         Action::WriteExr { .. } => "write_exr",
         Action::WritePng { .. } => "write_png",
@@ -79,7 +79,7 @@ fn no_picture_twice(actions: &[ActionAt]) -> Result<(), Box<Diagnostic>> {
 fn apply(stack: &mut Vec<Cell>, at: &ActionAt) -> Result<(), Box<Diagnostic>> {
     match at.action {
         Action::Accelerate { .. } | Action::BoundingBoxes | Action::CollectLights => top(stack, at, Cell::Scene)?,
-        Action::PathTrace { .. } => {
+        Action::PathTrace(_) => {
             top(stack, at, Cell::Scene)?;
             stack.push(Cell::SpectralImage);
         }

@@ -243,7 +243,7 @@ pub enum Binary {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Coercion {
     IntToFloat,
-    /// A number as a constant reflectance, index or extinction.
+    /// A number as a constant spectrum of any kind but emission.
     Constant(crate::types::SpectrumKind),
     /// A tuple of two or three ints or floats.
     TupleToVec,

@@ -9,16 +9,44 @@ use std::sync::Arc;
 /// What a spectrum means. Kinds do not mix: an emission cannot be passed as a reflectance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SpectrumKind {
-    /// Dimensionless, within [0, 1].
+    /// Share of the light that comes back, within [0, 1].
     Reflectance,
+    /// Share of the light that goes through, within [0, 1].
+    Transmission,
     /// Radiance, intensity or irradiance per nanometre.
     Emission,
     /// Real part of the index of refraction.
     RefractiveIndex,
-    /// Imaginary part of the index of refraction.
+    /// Imaginary part k of the index of refraction; dimensionless.
     Extinction,
     /// Absorption or scattering per metre.
     Coefficient,
+}
+
+impl SpectrumKind {
+    /// The name of its type.
+    pub const fn name(self) -> &'static str {
+        match self {
+            SpectrumKind::Reflectance => "reflectance",
+            SpectrumKind::Transmission => "transmission",
+            SpectrumKind::Emission => "emission",
+            SpectrumKind::RefractiveIndex => "refractive_index",
+            SpectrumKind::Extinction => "extinction",
+            SpectrumKind::Coefficient => "coefficient",
+        }
+    }
+
+    /// What its values are, as in "a reflectance is …".
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            SpectrumKind::Reflectance => "the share of light that comes back",
+            SpectrumKind::Transmission => "the share of light that goes through",
+            SpectrumKind::Emission => "light per nanometre",
+            SpectrumKind::RefractiveIndex => "the real part of the index, eta",
+            SpectrumKind::Extinction => "the imaginary part of the index, k",
+            SpectrumKind::Coefficient => "absorption or scattering per metre",
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +87,7 @@ pub enum Type {
     Filter,
     Action,
     Exposure,
+    Observer,
     Strategy,
     /// Of the normals of microfacets.
     Distribution,
@@ -170,6 +199,7 @@ pub const NAMED: &[(&str, Type)] = &[
     ("direction", Type::Direction),
     ("transform", Type::Transform),
     ("reflectance", Type::Spectrum(SpectrumKind::Reflectance)),
+    ("transmission", Type::Spectrum(SpectrumKind::Transmission)),
     ("emission", Type::Spectrum(SpectrumKind::Emission)),
     ("refractive_index", Type::Spectrum(SpectrumKind::RefractiveIndex)),
     ("extinction", Type::Spectrum(SpectrumKind::Extinction)),
@@ -190,6 +220,7 @@ pub const NAMED: &[(&str, Type)] = &[
     ("filter", Type::Filter),
     ("action", Type::Action),
     ("exposure", Type::Exposure),
+    ("observer", Type::Observer),
     ("strategy", Type::Strategy),
     ("distribution", Type::Distribution),
     ("sky_model", Type::SkyModel),

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 
 use arsc_ir::{
-    Action, ActionAt, Attributes, Camera, Density, Distribution, Exposure, Filter, NodeId, PhaseFunction, Spectrum,
-    Strategy,
+    Action, ActionAt, Attributes, Camera, Density, Distribution, Exposure, Filter, NodeId, Observer, PhaseFunction,
+    Spectrum, Strategy,
 };
 
 use crate::code::{Coercion, FnId};
@@ -42,6 +42,7 @@ pub enum Value {
     Filter(Arc<Filter>),
     Action(Arc<ActionAt>),
     Exposure(Exposure),
+    Observer(Observer),
     Strategy(Strategy),
     Distribution(Distribution),
     /// A value of a type that has only one.
@@ -221,6 +222,13 @@ impl Value {
         match self {
             Value::Distribution(distribution) => *distribution,
             other => bug("a distribution", other),
+        }
+    }
+
+    pub fn as_observer(&self) -> Observer {
+        match self {
+            Value::Observer(observer) => *observer,
+            other => bug("an observer", other),
         }
     }
 

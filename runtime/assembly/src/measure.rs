@@ -34,9 +34,9 @@ pub fn measure(ir: &Ir, settings: &Settings, host: &dyn Host, seconds: f64) -> R
     let mut hits = 0;
     let rays = repeat(host, seconds, |_| hits = stage.pool.install(|| trace_pixels(&world, &camera)));
     let mut base = PathTraceSettings { samples: 4, ..PathTraceSettings::default() };
-    let first = sequence::actions(ir, "").into_iter().find(|action| matches!(action, Action::PathTrace { .. }));
-    if let Some(Action::PathTrace { max_depth, polarised, .. }) = first {
-        (base.max_depth, base.polarised) = (max_depth, polarised);
+    let first = sequence::actions(ir, "").into_iter().find(|action| matches!(action, Action::PathTrace(_)));
+    if let Some(Action::PathTrace(trace)) = first {
+        (base.max_depth, base.polarised) = (trace.max_depth, trace.polarised);
     }
     base.max_depth = settings.max_depth.unwrap_or(base.max_depth);
     let paths = repeat(host, seconds, |round| {

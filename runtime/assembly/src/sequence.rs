@@ -9,8 +9,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use arsc_image::{DisplayImage, SpectralImage};
-use arsc_ir::{Action, Ir};
-use arsc_render::{PathTraceSettings, path_trace};
+use arsc_ir::{Action, Ir, PathTrace};
+use arsc_render::{Bands, PathTraceSettings, path_trace};
 
 use crate::stage::{Stage, accel_strategy};
 use crate::{AssemblyError, Host, Settings, measure_rays};
@@ -64,9 +64,8 @@ impl Item {
 
 /// What is done when a script says nothing: a render, written as EXR and PNG under the scene's name.
 pub fn default_actions(scene_name: &str) -> Vec<Action> {
-    let PathTraceSettings { samples, max_depth, seed, polarised, .. } = PathTraceSettings::default();
     vec![
-        Action::PathTrace { samples, max_depth, seed, polarised },
+        Action::PathTrace(PathTrace::default()),
         Action::WriteExr { path: format!("{scene_name}.exr") },
         Action::ToneMap { exposure: arsc_ir::Exposure::Auto },
         Action::WritePng { path: format!("{scene_name}.png") },
@@ -122,16 +121,7 @@ impl Machine<'_> {
                 let strategy = self.scene("collect_lights")?;
                 self.stage.say_lights(strategy)?;
             }
-            Action::PathTrace { samples, max_depth, seed, polarised } => {
-                let asked = PathTraceSettings {
-                    samples: *samples,
-                    max_depth: *max_depth,
-                    seed: *seed,
-                    polarised: *polarised,
-                    ..PathTraceSettings::default()
-                };
-                return self.path_trace(asked);
-            }
+            Action::PathTrace(trace) => return self.path_trace(trace),
             Action::WriteExr { path } => {
                 let bytes = arsc_image::encode_exr(&*self.spectral("write_exr")?)?;
                 self.write(path, &bytes)?;
@@ -160,17 +150,20 @@ impl Machine<'_> {
     }
 
     /// Renders as the script asks, but for what the run asks otherwise.
-    fn path_trace(&mut self, asked: PathTraceSettings) -> Result<bool, AssemblyError> {
+    fn path_trace(&mut self, trace: &PathTrace) -> Result<bool, AssemblyError> {
         let strategy = self.scene("path_trace")?;
         let camera = self.stage.camera(strategy)?;
         let settings = PathTraceSettings {
-            samples: self.settings.samples.unwrap_or(asked.samples),
-            max_depth: self.settings.max_depth.unwrap_or(asked.max_depth),
-            seed: self.settings.seed.unwrap_or(asked.seed),
+            samples: self.settings.samples.unwrap_or(trace.samples),
+            max_depth: self.settings.max_depth.unwrap_or(trace.max_depth),
+            seed: self.settings.seed.unwrap_or(trace.seed),
             crop: self.settings.crop,
-            ..asked
+            wavelengths: trace.wavelengths,
+            bands: Bands::over(&trace.wavelengths, trace.band_nm, trace.observer),
+            polarised: trace.polarised,
         };
-        let world = self.stage.world(strategy)?;
+        self.settings.check_film(camera.resolution(), &settings.bands, settings.polarised)?;
+        let world = self.stage.world_for(strategy, &trace.wavelengths)?;
         let progress = self.host.begin(u64::from(settings.samples) * self.settings.pixels(camera.resolution())?);
         let start = self.host.seconds();
         let film = self.stage.pool.install(|| path_trace(&world, &camera, &settings, &*progress));
@@ -210,6 +203,9 @@ impl Machine<'_> {
         add("samples", samples);
         add("maxDepth", settings.max_depth.to_string());
         add("csg", strategy.name().to_owned());
+        let (first, last) = (settings.wavelengths.min_nm(), settings.wavelengths.max_nm());
+        add("wavelengths", format!("{first}nm to {last}nm"));
+        add("observer", settings.bands.observer.name().to_owned());
         if let Some([x0, y0, x1, y1]) = settings.crop {
             add("crop", format!("{x0},{y0},{x1},{y1}"));
         }

@@ -1,6 +1,7 @@
 //! What a run is asked for besides what the script says.
 
 use arsc_accel::{Budget, Strategy};
+use arsc_render::{Bands, Film};
 
 use crate::AssemblyError;
 
@@ -32,6 +33,17 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Refuses a film that would take more memory than the largest picture of the default bands.
+    pub fn check_film(&self, resolution: [u32; 2], bands: &Bands, polarised: bool) -> Result<(), AssemblyError> {
+        let most = MOST_PIXELS.saturating_mul(Film::bytes([1, 1], None, &Bands::default(), true));
+        let bytes = Film::bytes(resolution, self.crop, bands, polarised);
+        if bytes > most {
+            let refusal = format!("a picture with {} bands would take {} GB", bands.count, bytes >> 30);
+            return Err(AssemblyError::Settings(refusal));
+        }
+        Ok(())
+    }
+
     /// Pixels to render at this resolution.
     pub fn pixels(&self, [width, height]: [u32; 2]) -> Result<u64, AssemblyError> {
         let all = u64::from(width) * u64::from(height);

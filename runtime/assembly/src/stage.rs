@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use arsc_accel::{BuildOptions, Csg, Scene, SceneGeometry, Solid, Strategy};
 use arsc_geometry::{Aabb, DVec3, Placed};
-use arsc_ir::Ir;
+use arsc_ir::{Ir, WavelengthRange};
 use arsc_render::{Camera, LightSource, World};
 
 use crate::{AssemblyError, Host, Settings, camera, geometry, lights, materials};
@@ -28,6 +28,8 @@ pub struct Stage<'a> {
 struct Built {
     strategy: Strategy,
     world: Arc<World>,
+    /// For which its lights are weighed.
+    range: WavelengthRange,
     seconds: f64,
 }
 
@@ -42,6 +44,20 @@ impl<'a> Stage<'a> {
         Ok(Stage { ir, settings, host, geometry, pool, built: RefCell::new(None) })
     }
 
+    /// The scene built for a strategy, its lights weighed for the wavelengths of a render.
+    pub fn world_for(&self, strategy: Strategy, range: &WavelengthRange) -> Result<Arc<World>, AssemblyError> {
+        drop(self.world(strategy)?);
+        let mut built = self.built.borrow_mut();
+        if let Some(built) = built.as_mut().filter(|built| built.range != *range)
+            && let Some(world) = Arc::get_mut(&mut built.world)
+        {
+            world.weigh_lights(range);
+            built.range = *range;
+        }
+        drop(built);
+        self.world(strategy)
+    }
+
     /// The scene built for a strategy.
     pub fn world(&self, strategy: Strategy) -> Result<Arc<World>, AssemblyError> {
         if let Some(built) = self.built.borrow().as_ref().filter(|built| built.strategy == strategy) {
@@ -54,7 +70,8 @@ impl<'a> Stage<'a> {
         let scene = self.pool.install(|| build(geometry, BuildOptions { strategy, budget: self.settings.budget }))?;
         let world = Arc::new(self.pool.install(|| World::new(scene, materials, lights, environments)));
         let seconds = self.host.seconds() - start;
-        *self.built.borrow_mut() = Some(Built { strategy, world: world.clone(), seconds });
+        *self.built.borrow_mut() =
+            Some(Built { strategy, world: world.clone(), range: WavelengthRange::VISIBLE, seconds });
         Ok(world)
     }
 
@@ -84,9 +101,9 @@ impl<'a> Stage<'a> {
         Ok(())
     }
 
-    /// Prints the light sources and their powers.
+    /// Prints the light sources and their powers over the visible range.
     pub fn say_lights(&self, strategy: Strategy) -> Result<(), AssemblyError> {
-        let world = self.world(strategy)?;
+        let world = self.world_for(strategy, &WavelengthRange::VISIBLE)?;
         let sources: Vec<_> = world.light_sources().collect();
         self.host.say(&format!("light sources: {}", sources.len()));
         for (source, power) in sources {

@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex};
 use arsc_diagnostics::{SourceId, Span};
 use arsc_geometry::{ClosedMesh, DAffine3, DVec3, TriangleMesh};
 use arsc_ir::{
-    Action, ActionAt, Attributes, Bsdf, Builder, Emitter, Environment, Exposure, Ir, NodeId, NodeKind, Precedence,
-    Shape, Spectrum, Surface,
+    Action, ActionAt, Attributes, Bsdf, Builder, Emitter, Environment, Exposure, Ir, NodeId, NodeKind, PathTrace,
+    Precedence, Shape, Spectrum, Surface,
 };
 
 use crate::{AssemblyError, Host, HostError, Outcome, Settings, run};
@@ -140,7 +140,7 @@ fn a_crop_gives_the_pixels_of_the_whole_picture() {
 
 #[test]
 fn stack_words_do_what_they_say() {
-    let trace = Action::PathTrace { samples: 1, max_depth: 3, seed: 9, polarised: false };
+    let trace = Action::PathTrace(PathTrace { samples: 1, max_depth: 3, seed: 9, ..PathTrace::default() });
     let exr = |name: &str| Action::WriteExr { path: name.into() };
     let tone_map = Action::ToneMap { exposure: Exposure::Ev(0.0) };
     let png = |name: &str| Action::WritePng { path: name.into() };

@@ -171,7 +171,7 @@ fn settings(args: &Args, scene: &Scene) -> Settings {
 }
 
 fn script_seed(ir: &Ir) -> u64 {
-    let seed = |action: &Action| if let Action::PathTrace { seed, .. } = action { Some(*seed) } else { None };
+    let seed = |action: &Action| if let Action::PathTrace(trace) = action { Some(trace.seed) } else { None };
     ir.actions.iter().find_map(|at| seed(&at.action)).unwrap_or(0)
 }
 

@@ -1,6 +1,6 @@
 //! Emission of surfaces.
 
-use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum, WavelengthRange};
 use glam::DVec3;
 
 use crate::polarisation::{Polarisation, Stokes};
@@ -34,9 +34,9 @@ impl AreaEmitter {
         self.two_sided
     }
 
-    /// Power per area over the rendered range, W m^-2.
-    pub fn exitance(&self) -> f64 {
+    /// Power per area over a range of wavelengths, W m^-2.
+    pub fn exitance(&self, range: &WavelengthRange) -> f64 {
         let sides = if self.two_sided { 2.0 } else { 1.0 };
-        std::f64::consts::PI * sides * self.radiance.integral()
+        std::f64::consts::PI * sides * self.radiance.integral(range)
     }
 }

@@ -1,21 +1,24 @@
 //! The film: what the samples of an image add up to.
 //!
 //! Per pixel: for every spectral band the sum of weighted radiance estimates and the sum of the estimates' weights, and
-//! the sum of CIE XYZ with the number of samples. A path gives four estimates, one per wavelength; each enters the
+//! the sum of the observer's XYZ with the number of samples. A path gives four estimates, one per wavelength; each enters the
 //! band that it falls into. Radiance of a band is the ratio of its two sums (so the random number of samples per band
 //! cancels), XYZ is sum over count. Sums of films of disjoint samples add: films merge.
 //! Pixels are stored tile by tile, so that threads own what they write. Values that are not finite or negative are
 //! counted and left out. Polarised films keep sums of the Stokes parameters S1 to S3 per band as well.
 
 use arsc_image::SpectralImage;
-use arsc_spectral::{LAMBDA_MAX_NM, LAMBDA_MIN_NM, LUMINOUS_EFFICACY, SampledWavelengths, matching_functions};
+use arsc_spectral::{LUMINOUS_EFFICACY, Observer, SampledWavelengths, WavelengthRange};
 
 use crate::polarisation::Stokes;
 
 /// Side of a tile in pixels.
 pub const TILE: u32 = 16;
 
-/// Equal bands over a range of wavelengths.
+/// Most bands of a film.
+pub const MAX_BANDS: usize = 1000;
+
+/// What a film records: equal bands over a range of wavelengths, and an observer's X, Y, Z beside them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bands {
     pub min_nm: f64,
@@ -23,16 +26,23 @@ pub struct Bands {
     pub width_nm: f64,
     /// At least 1.
     pub count: usize,
+    pub observer: Observer,
 }
 
 impl Default for Bands {
-    /// The rendered range in steps of 10 nm.
+    /// The visible range in steps of 10 nm, and the CIE 1931 observer.
     fn default() -> Bands {
-        Bands { min_nm: LAMBDA_MIN_NM, width_nm: 10.0, count: ((LAMBDA_MAX_NM - LAMBDA_MIN_NM) / 10.0) as usize }
+        Bands::over(&WavelengthRange::VISIBLE, 10.0, Observer::Cie1931)
     }
 }
 
 impl Bands {
+    /// Bands that cover a range, of the given width (positive, nm) or as little off it as makes them equal.
+    pub fn over(range: &WavelengthRange, width_nm: f64, observer: Observer) -> Bands {
+        let count = (range.width_nm() / width_nm).round().clamp(1.0, MAX_BANDS as f64) as usize;
+        Bands { min_nm: range.min_nm(), width_nm: range.width_nm() / count as f64, count, observer }
+    }
+
     pub fn edges_nm(&self) -> Vec<f64> {
         (0..=self.count).map(|i| self.min_nm + i as f64 * self.width_nm).collect()
     }
@@ -67,6 +77,7 @@ pub struct Tile {
     pub width: u32,
     pub height: u32,
     band_index: BandIndex,
+    observer: Observer,
     /// `[pixel][band]`: weighted estimate, weight.
     sums: Vec<[f32; 2]>,
     /// `[pixel][band]`: weighted S1, S2, S3; empty for films without polarisation.
@@ -85,6 +96,7 @@ impl Tile {
             width,
             height,
             band_index: BandIndex::new(&bands),
+            observer: bands.observer,
             sums: vec![[0.0; 2]; pixels * bands.count],
             stokes: vec![[0.0; 3]; if polarised { pixels * bands.count } else { 0 }],
             xyz: vec![[0.0; 3]; pixels],
@@ -111,7 +123,7 @@ impl Tile {
         let (lambda, knots) = (wavelengths.lambda_nm.to_array(), wavelengths.knots());
         let inverse_pdf_lanes = inverse_pdf;
         let inverse_pdf = inverse_pdf.to_array();
-        let matching = matching_functions();
+        let matching = self.observer.matching_functions();
         for i in 0..4 {
             if let Some(band) = self.band_index.of(lambda[i]) {
                 let [sum, sum_of_weights] = &mut self.sums[row + band];
@@ -320,6 +332,37 @@ mod tests {
             if samples == 256 {
                 let expected = 2.0 * 683.0 * 106.8569;
                 assert!((f64::from(image.xyz[0][1]) / expected - 1.0).abs() < 1e-3, "{}", image.xyz[0][1]);
+            }
+        }
+    }
+
+    /// Bands cover the range that was asked for, whatever their width.
+    #[test]
+    fn bands_cover_their_range() {
+        let over = |range: &WavelengthRange, width_nm| Bands::over(range, width_nm, Observer::Cie1931);
+        for (min, max, width, count) in [(360.0, 830.0, 10.0, 47), (380.0, 700.0, 40.0, 8), (300.0, 777.0, 10.0, 48)] {
+            let bands = over(&WavelengthRange::new(min, max).unwrap(), width);
+            let edges = bands.edges_nm();
+            assert_eq!((bands.count, edges[0]), (count, min));
+            assert!((edges[count] - max).abs() < 1e-9, "{edges:?}");
+        }
+        assert_eq!(over(&WavelengthRange::VISIBLE, 1e9).count, 1);
+        assert_eq!(over(&WavelengthRange::VISIBLE, 1e-9).count, MAX_BANDS);
+    }
+
+    /// Every observer sees the constant spectrum with the integrals of its matching functions.
+    #[test]
+    fn observers_have_their_own_eyes() {
+        for observer in Observer::ALL {
+            let bands = Bands::over(&WavelengthRange::VISIBLE, 10.0, observer);
+            let mut film = Film::new([1, 1], None, bands, false);
+            for i in 0..256 {
+                let wavelengths = SampledWavelengths::sample((f64::from(i) + 0.5) / 1024.0);
+                film.tiles[0].add(0, 0, &wavelengths, &SampledSpectrum::ONE, 1.0);
+            }
+            let expected = observer.xyz_of_radiance(&arsc_spectral::Spectrum::Constant(1.0));
+            for (got, expected) in film.to_image().xyz[0].into_iter().zip(expected) {
+                assert!((f64::from(got) / expected - 1.0).abs() < 4e-3, "{observer:?}: {got} instead of {expected}");
             }
         }
     }

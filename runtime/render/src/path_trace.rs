@@ -8,7 +8,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use arsc_spectral::SampledWavelengths;
+use arsc_spectral::{WavelengthDistribution, WavelengthRange};
 
 use crate::camera::Camera;
 use crate::film::{Bands, Film, Tile};
@@ -27,6 +27,9 @@ pub struct PathTraceSettings {
     pub seed: u64,
     /// Pixels x0, y0, x1, y1 (end exclusive) of the full image; the rest stays empty.
     pub crop: Option<[u32; 4]>,
+    /// What is sampled; light outside of it does not exist.
+    pub wavelengths: WavelengthRange,
+    /// What the film records; the observer's eye also decides where wavelengths are dense.
     pub bands: Bands,
     /// Keep track of polarisation, and of the Stokes parameters S1 to S3 on the film.
     pub polarised: bool,
@@ -34,7 +37,15 @@ pub struct PathTraceSettings {
 
 impl Default for PathTraceSettings {
     fn default() -> PathTraceSettings {
-        PathTraceSettings { samples: 64, max_depth: 20, seed: 0, crop: None, bands: Bands::default(), polarised: false }
+        PathTraceSettings {
+            samples: 64,
+            max_depth: 20,
+            seed: 0,
+            crop: None,
+            wavelengths: WavelengthRange::VISIBLE,
+            bands: Bands::default(),
+            polarised: false,
+        }
     }
 }
 
@@ -65,12 +76,13 @@ const WAVELENGTHS: u32 = 1;
 pub fn path_trace(world: &World, camera: &Camera, settings: &PathTraceSettings, progress: &dyn Progress) -> Film {
     let mut film = Film::new(camera.resolution(), settings.crop, settings.bands, settings.polarised);
     let trace = if settings.polarised { trace_tile::<Polarised> } else { trace_tile::<Unpolarised> };
+    let distribution = WavelengthDistribution::new(settings.wavelengths, settings.bands.observer);
     let mut done = 0;
     while done < settings.samples && !film.tiles.is_empty() && !progress.cancelled() {
         let pass = done.clamp(1, LONGEST_PASS).min(settings.samples - done);
         film.tiles.par_iter_mut().for_each(|tile| {
             if !progress.cancelled() {
-                trace(world, camera, settings, done..done + pass, tile);
+                trace(world, camera, settings, &distribution, done..done + pass, tile);
                 progress.advance(u64::from(tile.width) * u64::from(tile.height) * u64::from(pass));
             }
         });
@@ -83,6 +95,7 @@ fn trace_tile<P: Polarisation>(
     world: &World,
     camera: &Camera,
     settings: &PathTraceSettings,
+    distribution: &WavelengthDistribution,
     samples: std::ops::Range<u32>,
     tile: &mut Tile,
 ) {
@@ -91,7 +104,7 @@ fn trace_tile<P: Polarisation>(
             let pixel = [tile.x0 + x, tile.y0 + y];
             for index in samples.clone() {
                 let sampler = Sampler::new(settings.seed, pixel, index);
-                let wavelengths = SampledWavelengths::sample(sampler.single(WAVELENGTHS));
+                let wavelengths = distribution.sample(sampler.single(WAVELENGTHS));
                 let position = camera.filter.sample(sampler.pair(PIXEL_POSITION));
                 let center = DVec2::new(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
                 let ray = camera.ray(center + position.offset);

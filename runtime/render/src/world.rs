@@ -6,6 +6,7 @@
 //! scattered rays only.
 
 use arsc_accel::{Hit, Part, PartId, Scene};
+use arsc_spectral::WavelengthRange;
 
 use crate::bsdf::Bsdf;
 use crate::emitter::AreaEmitter;
@@ -69,33 +70,42 @@ impl World {
             powers: Vec::new(),
             choice: AliasTable::default(),
         };
-        world.collect_sources();
-        world.choose_probabilities();
+        world.weigh_lights(&WavelengthRange::VISIBLE);
         world
     }
 
-    fn collect_sources(&mut self) {
+    /// Chooses lights by their power over the wavelengths that a render samples; before, it is that over the visible
+    /// ones. A matter of variance alone.
+    pub fn weigh_lights(&mut self, range: &WavelengthRange) {
+        self.collect_sources(range);
+        self.choose_probabilities();
+    }
+
+    fn collect_sources(&mut self, range: &WavelengthRange) {
         let mut found = Vec::new();
         for i in 0..self.geometry.parts().len() {
             let part = PartId(i as u32);
-            if let Some(power) = self.part_power(part) {
+            if let Some(power) = self.part_power(part, range) {
                 let material = self.geometry.parts()[i].material.0;
                 found.push((LightSource::Part { part, material }, power));
             }
         }
         let radius = self.scene_radius();
-        let lights = (0..).zip(&self.lights).map(|(i, light)| (LightSource::Light(i), light.power(radius)));
+        let lights = (0..).zip(&self.lights).map(|(i, light)| (LightSource::Light(i), light.power(radius, range)));
         found.extend(lights);
         let environments = (0..).zip(&self.environments);
-        found.extend(environments.map(|(i, environment)| (LightSource::Environment(i), environment.power(radius))));
+        found.extend(
+            environments.map(|(i, environment)| (LightSource::Environment(i), environment.power(radius, range))),
+        );
         // What is dark or unbounded cannot be sampled by power.
         found.retain(|(_, power)| *power > 0.0 && power.is_finite());
         (self.sources, self.powers) = found.into_iter().unzip();
     }
 
     /// Power that a part emits; `None` if it is no lamp. Where only some of its faces emit, only they are sampled.
-    fn part_power(&mut self, part: PartId) -> Option<f64> {
-        let exitance = |material: u32| self.materials[material as usize].emitter.as_ref().map(AreaEmitter::exitance);
+    fn part_power(&mut self, part: PartId, range: &WavelengthRange) -> Option<f64> {
+        let emitter = |material: u32| self.materials[material as usize].emitter.as_ref();
+        let exitance = |material: u32| emitter(material).map(|emitter| emitter.exitance(range));
         let base = exitance(self.geometry.parts()[part.0 as usize].material.0);
         let others: Vec<(u32, Option<f64>)> =
             self.geometry.face_materials(part).iter().map(|&(face, material)| (face, exitance(material.0))).collect();
@@ -115,6 +125,8 @@ impl World {
     }
 
     fn choose_probabilities(&mut self) {
+        self.part_probability.fill(0.0);
+        self.environment_probability.fill(0.0);
         let total: f64 = self.powers.iter().sum();
         let n = self.sources.len() as f64;
         let weights: Vec<f64> = self.powers.iter().map(|p| (1.0 - FLOOR) * p + FLOOR * total / n).collect();

@@ -1,11 +1,12 @@
 //! Spectra tabulated for the inner loop.
 //!
-//! Knots every nanometre from 360 to 830 nm; the value between knots is that of the nearest one. Single precision.
+//! Knots every nanometre over the range of the tables ([`crate::TABLE_MIN_NM`]); the value between knots is that of the
+//! nearest one. Single precision.
 
 use glam::Vec4;
 
-use crate::observer::KNOTS;
-use crate::{LAMBDA_MIN_NM, SampledSpectrum, SampledWavelengths, Spectrum};
+use crate::range::{KNOTS, knot_nm, nearest_knot};
+use crate::{SampledSpectrum, SampledWavelengths, Spectrum, WavelengthRange};
 
 /// A spectrum as the renderer holds it.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +25,7 @@ impl DenseSpectrum {
     pub fn from_fn(value_at: impl Fn(f64) -> f64) -> DenseSpectrum {
         let mut table = Box::new([0.0; KNOTS]);
         for (i, entry) in table.iter_mut().enumerate() {
-            let value = value_at(LAMBDA_MIN_NM + i as f64) as f32;
+            let value = value_at(knot_nm(i)) as f32;
             *entry = if value.is_finite() { value } else { 0.0 };
         }
         if table.iter().all(|value| *value == table[0]) {
@@ -55,7 +56,7 @@ impl DenseSpectrum {
         }
     }
 
-    /// The value at the knot nearest to a wavelength of the rendered range.
+    /// The value at the knot nearest to a wavelength.
     pub fn at(&self, lambda_nm: f64) -> f32 {
         match self {
             DenseSpectrum::Constant(value) => *value,
@@ -67,30 +68,22 @@ impl DenseSpectrum {
         matches!(self, DenseSpectrum::Constant(_))
     }
 
-    /// Largest value.
-    pub fn max(&self) -> f32 {
+    /// Integral over a range, in the spectrum's unit times nm; the table counts as linear between its knots.
+    pub fn integral(&self, range: &WavelengthRange) -> f64 {
         match self {
-            DenseSpectrum::Constant(value) => *value,
-            DenseSpectrum::Table(table) => table.iter().copied().fold(f32::NEG_INFINITY, f32::max),
-        }
-    }
-
-    /// Integral over the rendered range, in the spectrum's unit times nm.
-    pub fn integral(&self) -> f64 {
-        match self {
-            DenseSpectrum::Constant(value) => f64::from(*value) * (KNOTS - 1) as f64,
+            DenseSpectrum::Constant(value) => f64::from(*value) * range.width_nm(),
             DenseSpectrum::Table(table) => {
-                let ends = 0.5 * (f64::from(table[0]) + f64::from(table[KNOTS - 1]));
-                table.iter().map(|value| f64::from(*value)).sum::<f64>() - ends
+                // The part of each cell that lies within the range, and the middle of that part.
+                let cell = |i: usize| {
+                    let (low, high) = (knot_nm(i).max(range.min_nm()), knot_nm(i + 1).min(range.max_nm()));
+                    let t = 0.5 * (low + high) - knot_nm(i);
+                    let value = f64::from(table[i]) * (1.0 - t) + f64::from(table[i + 1]) * t;
+                    (high - low).max(0.0) * value
+                };
+                (0..KNOTS - 1).map(cell).sum()
             }
         }
     }
-}
-
-/// Index of the nearest knot; wavelengths outside of the range take the end knots.
-#[inline]
-pub(crate) fn nearest_knot(lambda_nm: f32) -> u32 {
-    ((lambda_nm - (LAMBDA_MIN_NM as f32 - 0.5)) as u32).min(KNOTS as u32 - 1)
 }
 
 #[cfg(test)]
@@ -101,7 +94,7 @@ mod tests {
     fn tables_agree_with_their_spectrum_at_the_knots() {
         let spectrum = Spectrum::Blackbody { kelvin: 4000.0 };
         let dense = DenseSpectrum::new(&spectrum);
-        for lambda in [360.0, 361.0, 555.0, 829.0, 830.0] {
+        for lambda in [201.0, 360.0, 361.0, 555.0, 829.0, 830.0, 1099.0] {
             let exact = spectrum.eval(lambda) as f32;
             assert_eq!(dense.at(lambda), exact);
             assert_eq!(dense.at(lambda + 0.4), exact);
@@ -121,7 +114,9 @@ mod tests {
     #[test]
     fn integral_of_a_linear_spectrum_is_exact() {
         let line = DenseSpectrum::from_fn(|lambda| lambda - 360.0);
-        assert!((line.integral() - 470.0 * 235.0).abs() < 1e-3);
-        assert_eq!(DenseSpectrum::Constant(2.0).integral(), 940.0);
+        assert!((line.integral(&WavelengthRange::VISIBLE) - 470.0 * 235.0).abs() < 1e-3);
+        let odd = WavelengthRange::new(400.25, 501.75).unwrap();
+        assert!((line.integral(&odd) - 101.5 * 91.0).abs() < 1e-3, "{}", line.integral(&odd));
+        assert_eq!(DenseSpectrum::Constant(2.0).integral(&WavelengthRange::VISIBLE), 940.0);
     }
 }

@@ -13,16 +13,19 @@ impl Spectrum {
                 let z = (lambda_nm - center_nm) / sigma_nm;
                 peak * (-0.5 * z * z).exp()
             }
-            Spectrum::Sellmeier { b, c_um2 } => {
+            Spectrum::Sellmeier { a, b, c_um2 } => {
                 let l2 = square(lambda_nm * 1e-3);
-                let sum: f64 = b.iter().zip(c_um2).map(|(b, c)| b * l2 / (l2 - c)).sum();
-                (1.0 + sum).max(0.0).sqrt()
+                let sum: f64 = b.iter().zip(c_um2.iter()).map(|(b, c)| b * l2 / (l2 - c)).sum();
+                (a + sum).max(0.0).sqrt()
             }
             Spectrum::Cauchy { a, b_um2, c_um4 } => {
                 let l2 = square(lambda_nm * 1e-3);
                 a + b_um2 / l2 + c_um4 / (l2 * l2)
             }
             Spectrum::Sigmoid { coefficients: [c0, c1, c2] } => sigmoid((c0 * lambda_nm + c1) * lambda_nm + c2),
+            Spectrum::Absorbance { transmission, thickness } => {
+                -transmission.eval(lambda_nm).clamp(1e-12, 1.0).ln() / thickness
+            }
             Spectrum::Scaled { factor, spectrum } => factor * spectrum.eval(lambda_nm),
             Spectrum::Product(a, b) => a.eval(lambda_nm) * b.eval(lambda_nm),
             Spectrum::Sum(a, b) => a.eval(lambda_nm) + b.eval(lambda_nm),
@@ -79,8 +82,9 @@ mod tests {
     #[test]
     fn sellmeier_gives_the_index_of_fused_silica() {
         let silica = Spectrum::Sellmeier {
-            b: [0.6961663, 0.4079426, 0.8974794],
-            c_um2: [0.0684043f64.powi(2), 0.1162414f64.powi(2), 9.896161f64.powi(2)],
+            a: 1.0,
+            b: Arc::from([0.6961663, 0.4079426, 0.8974794]),
+            c_um2: Arc::from([0.0684043f64.powi(2), 0.1162414f64.powi(2), 9.896161f64.powi(2)]),
         };
         assert!((silica.eval(589.3) - 1.458404).abs() < 2e-6);
     }
@@ -99,6 +103,14 @@ mod tests {
         assert_eq!(Spectrum::Product(two.clone(), table.clone()).eval(450.0), 4.0);
         assert_eq!(Spectrum::Sum(two, table.clone()).eval(450.0), 4.0);
         assert_eq!(Spectrum::Scaled { factor: -3.0, spectrum: table }.eval(450.0), -6.0);
+    }
+
+    #[test]
+    fn absorbance_undoes_transmission() {
+        let transmission = Arc::new(Spectrum::Gaussian { center_nm: 550.0, sigma_nm: 20.0, peak: 0.5 });
+        let extinction = Spectrum::Absorbance { transmission, thickness: 0.25 };
+        assert!(((-extinction.eval(550.0) * 0.25).exp() - 0.5).abs() < 1e-15);
+        assert!((extinction.eval(2000.0) - 12.0 * 10f64.ln() / 0.25).abs() < 1e-9);
     }
 
     #[test]

@@ -3,12 +3,16 @@
 //! Pure data and mathematics. Conventions: wavelengths in vacuum, in nanometres, named `lambda_nm`; spectral
 //! quantities are densities per nanometre; reflectances and transmittances lie in [0, 1].
 //! [`Spectrum`] is what a scene says; [`DenseSpectrum`] is the table that a renderer reads; [`SampledSpectrum`] is
-//! what one path carries at the four wavelengths of its [`SampledWavelengths`].
+//! what one path carries at the four wavelengths of its [`SampledWavelengths`], drawn from a [`WavelengthDistribution`] over the [`WavelengthRange`] of the render.
 
+pub mod colour;
+mod daylight;
 mod dense;
+pub mod dispersion;
 mod eval;
 mod observer;
 mod planck;
+mod range;
 mod sampled;
 pub mod sky;
 mod sky_lanes;
@@ -17,19 +21,15 @@ pub mod srgb;
 mod uplift;
 mod wavelengths;
 
+pub use daylight::{DAYLIGHT_KELVIN, daylight, daylight_chromaticity, normalised};
 pub use dense::DenseSpectrum;
 pub use observer::{
-    LUMINOUS_EFFICACY, Y_INTEGRAL_NM, chromaticity, d65, matching_at, matching_functions, xyz_of_radiance,
-    xyz_of_reflectance,
+    LUMINOUS_EFFICACY, Observer, Y_INTEGRAL_NM, chromaticity, d65, xyz_of_radiance, xyz_of_reflectance,
 };
 pub use planck::planck;
+pub use range::{KNOTS, TABLE_MAX_NM, TABLE_MIN_NM, WavelengthRange};
 pub use sampled::SampledSpectrum;
 pub use sky_lanes::SkyLanes;
 pub use spectrum::Spectrum;
-pub use uplift::uplift_rgb;
-pub use wavelengths::SampledWavelengths;
-
-/// The rendered range, nm.
-pub const LAMBDA_MIN_NM: f64 = 360.0;
-/// The rendered range, nm.
-pub const LAMBDA_MAX_NM: f64 = 830.0;
+pub use uplift::{uplift_rgb, uplift_xyz};
+pub use wavelengths::{SampledWavelengths, WavelengthDistribution};

@@ -6,6 +6,7 @@
 //!
 //! The model's data end at [`BANDS`] wavelengths from 320 to 720 nm; between them radiance is linear in wavelength.
 //! Beyond 720 nm, where the eye's response is below 0.2 % of its peak, it goes on as the power law through the last two bands.
+//! Below 320 nm, where ozone absorbs, it falls linearly to zero at [`OZONE_EDGE_NM`].
 //! Below the horizon there is no sky: radiance is zero. A sun below the horizon is taken to stand on it.
 
 use std::f64::consts::FRAC_PI_2;
@@ -15,6 +16,9 @@ use std::sync::LazyLock;
 pub const BANDS: usize = 11;
 pub(crate) const FIRST_NM: f64 = 320.0;
 pub(crate) const STEP_NM: f64 = 40.0;
+
+/// Where the ground receives no more ultraviolet from the sky.
+pub const OZONE_EDGE_NM: f64 = 295.0;
 
 /// Angular radius of the solar disc, radians: the mean apparent diameter of 1919 arc seconds. (The authors' own code
 /// draws a disc of 0.51 degrees, which leaves some 8 % of the direct irradiance out.)
@@ -152,7 +156,7 @@ pub fn interpolate(bands: &[f64; BANDS], lambda_nm: f64) -> f64 {
     let x = (lambda_nm - FIRST_NM) / STEP_NM;
     let last = BANDS - 1;
     if x <= 0.0 {
-        return bands[0];
+        return bands[0] * ((lambda_nm - OZONE_EDGE_NM) / (FIRST_NM - OZONE_EDGE_NM)).max(0.0);
     }
     if x >= last as f64 {
         let (before, end) = (bands[last - 1], bands[last]);

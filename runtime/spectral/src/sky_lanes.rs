@@ -3,7 +3,7 @@
 //! Loops run over a fixed number of lanes without branches, so that the compiler turns them into vector code; the
 //! exponential is a polynomial (relative error below 3e-7 over its range).
 
-use crate::sky::{BANDS, FIRST_NM, HosekWilkieSky, PARAMETERS, STEP_NM};
+use crate::sky::{BANDS, FIRST_NM, HosekWilkieSky, OZONE_EDGE_NM, PARAMETERS, STEP_NM};
 use crate::{SampledSpectrum, SampledWavelengths};
 
 /// [`BANDS`] rounded up to whole vectors; the lanes beyond hold zero.
@@ -68,6 +68,10 @@ fn interpolate(bands: &[f32; LANES], lambda_nm: f32) -> f32 {
     if x >= LAST as f32 {
         return beyond(bands[LAST - 1], bands[LAST], lambda_nm);
     }
+    if x < 0.0 {
+        const FADE: f32 = (STEP_NM / (FIRST_NM - OZONE_EDGE_NM)) as f32;
+        return bands[0] * (1.0 + x * FADE).max(0.0);
+    }
     let i = x as usize;
     bands[i] + (bands[i + 1] - bands[i]) * (x - i as f32)
 }
@@ -122,9 +126,9 @@ mod tests {
             for i in 0..=40 {
                 for gamma in [0.0, 0.01, 0.2, 0.9, 2.0, 3.1] {
                     let cos_theta = i as f64 / 40.0;
-                    let wavelengths = SampledWavelengths::fixed([360.0, 487.5, 719.0, 800.0]);
+                    let wavelengths = SampledWavelengths::fixed([310.0, 487.5, 719.0, 800.0]);
                     let sampled = lanes.sample(cos_theta, gamma, &wavelengths).0.to_array();
-                    for (lambda, got) in [360.0, 487.5, 719.0, 800.0].into_iter().zip(sampled) {
+                    for (lambda, got) in [310.0, 487.5, 719.0, 800.0].into_iter().zip(sampled) {
                         let exact = sky.sky_radiance(cos_theta, gamma, lambda);
                         let scale = exact.max(0.01 * sky.sky_radiance(1.0, 1.0, lambda));
                         assert!((f64::from(got) - exact).abs() < 2e-5 * scale, "{got} instead of {exact} at {lambda}");

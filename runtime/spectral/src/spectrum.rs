@@ -20,10 +20,12 @@ pub enum Spectrum {
         sigma_nm: f64,
         peak: f64,
     },
-    /// Refractive index: n^2 = 1 + sum b_i L^2 / (L^2 - c_i), L in micrometres, c_i in square micrometres.
+    /// Refractive index: n^2 = a + sum b_i L^2 / (L^2 - c_i), L in micrometres, c_i in square micrometres. `b` and
+    /// `c_um2` are of one length.
     Sellmeier {
-        b: [f64; 3],
-        c_um2: [f64; 3],
+        a: f64,
+        b: Arc<[f64]>,
+        c_um2: Arc<[f64]>,
     },
     /// Refractive index: n = a + b / L^2 + c / L^4, L in micrometres.
     Cauchy {
@@ -34,6 +36,12 @@ pub enum Spectrum {
     /// s(c0 L^2 + c1 L + c2) with s(x) = 1/2 + x / (2 sqrt(1 + x^2)), L in nanometres (Jakob and Hanika 2019).
     Sigmoid {
         coefficients: [f64; 3],
+    },
+    /// Coefficient of absorption of a medium of which `thickness` metres transmit as much as the spectrum says: -ln(t) / thickness, and
+    /// no more than at t = 1e-12.
+    Absorbance {
+        transmission: Arc<Spectrum>,
+        thickness: f64,
     },
     Scaled {
         factor: f64,

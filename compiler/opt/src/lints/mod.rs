@@ -53,7 +53,7 @@ fn is_rendered(ir: &Ir) -> bool {
         return ir.camera.is_some();
     }
     let any = |wanted: fn(&Action) -> bool| ir.actions.iter().any(|at| wanted(&at.action));
-    any(|action| matches!(action, Action::PathTrace { .. }))
+    any(|action| matches!(action, Action::PathTrace(_)))
         && any(|action| matches!(action, Action::WriteExr { .. } | Action::WritePng { .. }))
 }
 

@@ -313,8 +313,9 @@ fn advice(found: &Type, wanted: &Type) -> Option<String> {
         (Bsdf | Emitter | Medium | Attributes, ty) if ty.is_shape() => "attach it to a shape: `shape |> with(…)`",
         (Spectrum(_), Bsdf) => "make a bsdf of it: `lambert(…)` from std.material",
         (Spectrum(_), Emitter) => "make an emitter of it: `emitter(…)`",
-        (Spectrum(_), Spectrum(_)) => {
-            "kinds of spectra do not mix: reflectance, emission, refractive index, extinction, coefficient"
+        (Spectrum(found), Spectrum(wanted)) => {
+            let kind = |kind: &SpectrumKind| format!("`{}` is {}", kind.name(), kind.meaning());
+            return Some(format!("kinds of spectra do not mix: {}, {}", kind(found), kind(wanted)));
         }
         (Fn(_), Fn(_)) => return None,
         (Fn(_), _) => "call it: `f(…)`",

@@ -71,7 +71,7 @@ fn additive(op: BinaryOp, a: &Type, b: &Type) -> Option<Rule> {
 }
 
 fn product(a: &Type, b: &Type) -> Option<Rule> {
-    use SpectrumKind::{Emission, Reflectance};
+    use SpectrumKind::{Emission, Reflectance, Transmission};
     use Type::*;
     match (a, b) {
         (Int, Int) => rule(Binary::MulInt, Int, Int, Int),
@@ -80,10 +80,13 @@ fn product(a: &Type, b: &Type) -> Option<Rule> {
         (a, b) if is_number(a) && is_quantity(b) => rule(Binary::MulFloat, Float, b.clone(), b.clone()),
         (Spectrum(_), b) if is_number(b) => rule(Binary::ScaleSpectrum, a.clone(), Float, a.clone()),
         (a, Spectrum(_)) if is_number(a) => swapped(Binary::ScaleSpectrum, Float, b.clone(), b.clone()),
-        (Spectrum(Reflectance), Spectrum(Reflectance | Emission)) => {
+        (Spectrum(Reflectance), Spectrum(Reflectance | Emission))
+        | (Spectrum(Transmission), Spectrum(Transmission | Emission)) => {
             rule(Binary::MulSpectrum, a.clone(), b.clone(), b.clone())
         }
-        (Spectrum(Emission), Spectrum(Reflectance)) => rule(Binary::MulSpectrum, a.clone(), b.clone(), a.clone()),
+        (Spectrum(Emission), Spectrum(Reflectance | Transmission)) => {
+            rule(Binary::MulSpectrum, a.clone(), b.clone(), a.clone())
+        }
         (Transform, Transform) => rule(Binary::Compose, Transform, Transform, Transform),
         (Transform, Point) => rule(Binary::TransformPoint, Transform, Point, Point),
         (Transform, Vec3 | Direction) => rule(Binary::TransformVector, Transform, Vec3, Vec3),

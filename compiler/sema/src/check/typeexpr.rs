@@ -107,7 +107,10 @@ impl<'a> Checker<'a> {
         let diagnostic = Diagnostic::new(codes::UNKNOWN_TYPE, format!("there is no type `{}`", name.name));
         let diagnostic = diagnostic.label(name.span, "unknown type");
         let help = match name.name.as_str() {
-            "spectrum" => Some("say which kind: `reflectance`, `emission`, `refractive_index` or `extinction`"),
+            "spectrum" => Some(
+                "say which kind: `reflectance`, `transmission`, `emission`, `refractive_index`, `extinction` or \
+                 `coefficient`",
+            ),
             "number" | "double" | "real" | "length" => Some("numbers are `int` or `float`; lengths are `float`"),
             "image" | "film" => Some("images live on the stack of an action sequence, not in values"),
             "instance" => Some("a shape used twice is an instance: no type of its own is needed"),

@@ -3,7 +3,7 @@
 use arsc_diagnostics::Diagnostic;
 use arsc_diagnostics::codes::sema as codes;
 use arsc_ir::Spectrum;
-use arsc_spectral::{LAMBDA_MAX_NM, LAMBDA_MIN_NM};
+use arsc_spectral::WavelengthRange;
 
 use super::{Eval, Machine};
 use crate::code::Site;
@@ -11,6 +11,9 @@ use crate::value::Value;
 
 /// Tables have rounding; a hair above one is not worth a word.
 const ABOVE_ONE: f64 = 1.0 + 1e-6;
+
+/// What is rendered unless `path_trace` says otherwise.
+const RENDERED: WavelengthRange = WavelengthRange::VISIBLE;
 
 /// Extremes over the rendered range, every 5 nm.
 fn extremes(spectrum: &Spectrum) -> (f64, f64) {
@@ -21,8 +24,8 @@ fn extremes(spectrum: &Spectrum) -> (f64, f64) {
         _ => {}
     }
     let mut extremes = (f64::INFINITY, f64::NEG_INFINITY);
-    let mut lambda_nm = LAMBDA_MIN_NM;
-    while lambda_nm <= LAMBDA_MAX_NM {
+    let mut lambda_nm = RENDERED.min_nm();
+    while lambda_nm <= RENDERED.max_nm() {
         let value = spectrum.eval(lambda_nm);
         extremes = (extremes.0.min(value), extremes.1.max(value));
         lambda_nm += 5.0;
@@ -69,7 +72,7 @@ impl Machine<'_> {
 
     pub fn lint_wavelengths(&mut self, lambda_nm: &[f64], site: &Site, arg: usize) {
         let (first, last) = (lambda_nm[0], lambda_nm[lambda_nm.len() - 1]);
-        if last < LAMBDA_MIN_NM || first > LAMBDA_MAX_NM {
+        if last < RENDERED.min_nm() || first > RENDERED.max_nm() {
             let diagnostic = Diagnostic::new(codes::INVISIBLE_SPECTRUM, "no sample lies in the rendered range")
                 .label(site.args[arg], format!("from {first}nm to {last}nm"));
             let help =

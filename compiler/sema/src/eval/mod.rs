@@ -80,7 +80,7 @@ pub struct Machine<'a> {
     std_caller: Option<Span>,
     in_std: bool,
     collected: Vec<Value>,
-    tables: FxHashMap<(SourceId, String), Table>,
+    tables: FxHashMap<(SourceId, String), Arc<Table>>,
     /// By path.
     pub(crate) closed_meshes: FxHashMap<Arc<str>, ClosedOutcome>,
     pub nodes: Vec<Node>,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use arsc_diagnostics::codes::sema as codes;
 use arsc_ir::{Attributes, Density, Environment, Medium, NodeKind, PhaseFunction, Spectrum};
-use arsc_spectral::{LAMBDA_MAX_NM, LAMBDA_MIN_NM};
+use arsc_spectral::{TABLE_MAX_NM, TABLE_MIN_NM};
 
 use super::{Builtin, Param};
 use crate::eval::Eval;
@@ -95,10 +95,10 @@ fn coefficients() -> Vec<Builtin> {
 
 /// The knots of tables.
 fn wavelengths() -> impl Iterator<Item = f64> {
-    (LAMBDA_MIN_NM as u32..=LAMBDA_MAX_NM as u32).map(f64::from)
+    (TABLE_MIN_NM as u32..=TABLE_MAX_NM as u32).map(f64::from)
 }
 
-/// A function of wavelength as a table with a knot every nanometre of the rendered range.
+/// A function of wavelength as a table with a knot every nanometre that can be rendered.
 fn tabulated(value_at: impl Fn(f64) -> f64) -> Value {
     let lambda_nm: Arc<[f64]> = wavelengths().collect();
     let values = lambda_nm.iter().map(|&lambda_nm| value_at(lambda_nm)).collect();

@@ -228,14 +228,21 @@ pub fn choices(ty: &Type) -> &'static [(&'static str, Value)] {
         (Strategy::Hybrid.name(), Value::Strategy(Strategy::Hybrid)),
         (Strategy::Incremental.name(), Value::Strategy(Strategy::Incremental)),
     ];
+    const OBSERVERS: [(&str, Value); 4] = [
+        (Observer::ALL[0].name(), Value::Observer(Observer::ALL[0])),
+        (Observer::ALL[1].name(), Value::Observer(Observer::ALL[1])),
+        (Observer::ALL[2].name(), Value::Observer(Observer::ALL[2])),
+        (Observer::ALL[3].name(), Value::Observer(Observer::ALL[3])),
+    ];
     const DISTRIBUTIONS: [(&str, Value); Distribution::ALL.len()] = [
         (Distribution::Ggx.name(), Value::Distribution(Distribution::Ggx)),
         (Distribution::Beckmann.name(), Value::Distribution(Distribution::Beckmann)),
         (Distribution::Blinn.name(), Value::Distribution(Distribution::Blinn)),
     ];
-    use arsc_ir::{Distribution, Exposure, Strategy};
+    use arsc_ir::{Distribution, Exposure, Observer, Strategy};
     match ty {
         Type::Exposure => &[("auto", Value::Exposure(Exposure::Auto))],
+        Type::Observer => &OBSERVERS,
         Type::Strategy => &STRATEGIES,
         Type::Distribution => &DISTRIBUTIONS,
         Type::SkyModel => &[("hosek_wilkie", Value::Only)],

@@ -1,6 +1,6 @@
 //! An environment with the same radiance everywhere.
 
-use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum, WavelengthRange};
 
 use super::EnvironmentSample;
 use crate::warp;
@@ -30,7 +30,7 @@ impl ConstantEnvironment {
     }
 
     /// Radiance integrated over the sphere and the rendered range, W m^-2.
-    pub(super) fn fluence(&self) -> f64 {
-        4.0 * std::f64::consts::PI * self.radiance.integral()
+    pub(super) fn fluence(&self, range: &WavelengthRange) -> f64 {
+        4.0 * std::f64::consts::PI * self.radiance.integral(range)
     }
 }

@@ -1,6 +1,6 @@
 //! Distant lights: parallel beams.
 
-use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum, WavelengthRange};
 use glam::DVec3;
 
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ impl DistantLight {
         self.irradiance.sample(wavelengths)
     }
 
-    pub(super) fn power(&self, scene_radius: f64) -> f64 {
-        std::f64::consts::PI * scene_radius * scene_radius * self.irradiance.integral()
+    pub(super) fn power(&self, scene_radius: f64, range: &WavelengthRange) -> f64 {
+        std::f64::consts::PI * scene_radius * scene_radius * self.irradiance.integral(range)
     }
 }

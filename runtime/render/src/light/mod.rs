@@ -11,7 +11,7 @@ mod grid;
 mod point;
 mod sky;
 
-use arsc_spectral::{SampledSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{SampledSpectrum, SampledWavelengths, Spectrum, WavelengthRange};
 use glam::DVec3;
 
 use crate::polarisation::{Polarisation, Stokes};
@@ -41,10 +41,10 @@ impl Light {
     }
 
     /// Power into a scene with a bounding sphere of this radius, W.
-    pub(crate) fn power(&self, scene_radius: f64) -> f64 {
+    pub(crate) fn power(&self, scene_radius: f64, range: &WavelengthRange) -> f64 {
         match self {
-            Light::Point(light) => light.power(),
-            Light::Distant(light) => light.power(scene_radius),
+            Light::Point(light) => light.power(range),
+            Light::Distant(light) => light.power(scene_radius, range),
         }
     }
 }
@@ -109,10 +109,10 @@ impl Environment {
     }
 
     /// Power into a scene with a bounding sphere of this radius, W.
-    pub(crate) fn power(&self, scene_radius: f64) -> f64 {
+    pub(crate) fn power(&self, scene_radius: f64, range: &WavelengthRange) -> f64 {
         let area = std::f64::consts::PI * scene_radius * scene_radius;
         match self {
-            Environment::Constant(constant) => area * constant.fluence(),
+            Environment::Constant(constant) => area * constant.fluence(range),
             Environment::Sky(sky) => area * sky.fluence(),
         }
     }

@@ -1,6 +1,6 @@
 //! Point lights: the same intensity in all directions.
 
-use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum, WavelengthRange};
 use glam::DVec3;
 
 #[derive(Clone, Debug)]
@@ -20,7 +20,7 @@ impl PointLight {
         self.intensity.sample(wavelengths) * (1.0 / distance2) as f32
     }
 
-    pub(super) fn power(&self) -> f64 {
-        4.0 * std::f64::consts::PI * self.intensity.integral()
+    pub(super) fn power(&self, range: &WavelengthRange) -> f64 {
+        4.0 * std::f64::consts::PI * self.intensity.integral(range)
     }
 }

@@ -7,7 +7,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use arsc_spectral::sky::{self, HosekWilkieSky};
-use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, SkyLanes};
+use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, SkyLanes, WavelengthRange};
 use glam::DVec3;
 
 use super::EnvironmentSample;
@@ -127,9 +127,9 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     if dot > 0.99 { 2.0 * (0.5 * (a - b).length()).min(1.0).asin() } else { dot.max(-1.0).acos() }
 }
 
-/// Sum over the rendered range of a spectrum given at the wavelengths of the model, times nm.
+/// Sum over the visible range (what is rendered beyond changes little in what to choose) of a spectrum given at the wavelengths of the model, times nm.
 fn integral(bands: &[f64; sky::BANDS]) -> f64 {
-    DenseSpectrum::from_fn(|lambda_nm| sky::interpolate(bands, lambda_nm)).integral()
+    DenseSpectrum::from_fn(|lambda_nm| sky::interpolate(bands, lambda_nm)).integral(&WavelengthRange::VISIBLE)
 }
 
 /// Mean radiance of each cell, W m^-2 sr^-1, and at least a hundredth of the dome's mean.

@@ -1,40 +1,13 @@
-//! Tables of samples in text form.
+//! Tables of samples in text form: CSV and SPD.
 //!
 //! `#` begins a comment line; the first row of words names the columns, the first column is the wavelength in
 //! nanometres; rows of numbers follow, separated by commas, semicolons or blanks.
 
 use std::sync::Arc;
 
-use arsc_diagnostics::codes::sema as codes;
+use arsc_ir::Spectrum;
 
-use super::{Eval, Machine};
-use crate::code::Site;
-use crate::registry::asset_failure;
-
-#[derive(Clone)]
-pub struct Table {
-    pub lambda_nm: Arc<[f64]>,
-    /// Names of all columns but the first.
-    pub columns: Vec<String>,
-    pub values: Vec<Arc<[f64]>>,
-}
-
-impl Machine<'_> {
-    /// The table in a file next to the calling module; read once.
-    pub fn table(&mut self, path: &str, site: &Site) -> Eval<Table> {
-        let key = (site.span.source, path.to_owned());
-        if let Some(table) = self.tables.get(&key) {
-            return Ok(table.clone());
-        }
-        let text = self.assets.text(site.span.source, path).map_err(|error| asset_failure(site, path, &error))?;
-        self.spend_elements(text.len() / 8, site.span)?;
-        let table = parse(&text).map_err(|message| site.fail_arg(0, codes::TABLE, message, "in this file"))?;
-        self.tables.insert(key, table.clone());
-        Ok(table)
-    }
-}
-
-fn parse(text: &str) -> Result<Table, String> {
+pub fn parse(text: &str) -> Result<Vec<(String, Spectrum)>, String> {
     let mut columns: Option<Vec<String>> = None;
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for (i, line) in text.lines().enumerate() {
@@ -59,7 +32,7 @@ fn parse(text: &str) -> Result<Table, String> {
     assemble(columns, &rows)
 }
 
-fn assemble(columns: Option<Vec<String>>, rows: &[Vec<f64>]) -> Result<Table, String> {
+fn assemble(columns: Option<Vec<String>>, rows: &[Vec<f64>]) -> Result<Vec<(String, Spectrum)>, String> {
     let width = rows.first().map_or(0, Vec::len);
     if width < 2 {
         return Err("the table needs rows of a wavelength and at least one value".into());
@@ -69,7 +42,9 @@ fn assemble(columns: Option<Vec<String>>, rows: &[Vec<f64>]) -> Result<Table, St
         return Err(format!("the heading names {} columns, but rows have {width}", columns.len()));
     }
     let column = |i: usize| -> Arc<[f64]> { rows.iter().map(|row| row[i]).collect() };
-    Ok(Table { lambda_nm: column(0), columns: columns[1..].to_vec(), values: (1..width).map(column).collect() })
+    let lambda_nm = column(0);
+    let spectrum = |i: usize| Spectrum::Tabulated { lambda_nm: lambda_nm.clone(), values: column(i) };
+    Ok(columns.into_iter().enumerate().skip(1).map(|(i, name)| (name, spectrum(i))).collect())
 }
 
 #[cfg(test)]
@@ -79,9 +54,17 @@ mod tests {
     #[test]
     fn reads_headings_comments_and_rows() {
         let table = parse("# origin\nlambda_nm,a,b\n400,0.1,0.2\n500, 0.3, 0.4\n").ok().unwrap();
-        assert_eq!(table.columns, ["a", "b"]);
-        assert_eq!(*table.lambda_nm, [400.0, 500.0]);
-        assert_eq!(*table.values[1], [0.2, 0.4]);
+        let names: Vec<&str> = table.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["a", "b"]);
+        assert_eq!((table[0].1.eval(400.0), table[1].1.eval(450.0)), (0.1, 0.30000000000000004));
+    }
+
+    /// The form of `.spd` files: pairs divided by blanks, without a heading.
+    #[test]
+    fn reads_spd_files() {
+        let table = parse("# lamp\n400 0.5\n500\t1.5\n").ok().unwrap();
+        assert_eq!(table.len(), 1);
+        assert_eq!(table[0].1.eval(450.0), 1.0);
     }
 
     #[test]
