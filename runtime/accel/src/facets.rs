@@ -60,6 +60,10 @@ struct Below {
 /// The facets of all mesh leaves of a solid, with their cells in `set`.
 pub fn append(facets: &mut Vec<Facet>, set: &mut CellSet, number: u32, solid: &SolidModel, budget: &Budget) {
     let Expression::Tokens(tokens) = &solid.expression else { return };
+    if solid.leaves.iter().all(|leaf| mesh_of(leaf).is_none()) {
+        return;
+    }
+    let first_kernel = set.push_kernels(&solid.leaves);
     let first = set.cells.len();
     let set = RefCell::new(set);
     for (leaf, placed) in (0..).zip(&solid.leaves) {
@@ -68,7 +72,7 @@ pub fn append(facets: &mut Vec<Facet>, set: &mut CellSet, number: u32, solid: &S
         let near = Near { solid, leaf };
         let push = |bounds: &Aabb, tokens: &[Token]| {
             let bounds = bounds.dilated(solid.tolerance);
-            set.borrow_mut().push(number, bounds, &leaves_of(tokens), tokens, &solid.leaves)
+            set.borrow_mut().push(number, bounds, &leaves_of(tokens), tokens, first_kernel)
         };
         let is_spent = || set.borrow().cells.len() - first >= budget.cells;
         let is_settled = |below: &Below| below.cell.is_some() || near.single(&below.tokens).is_some();

@@ -220,7 +220,7 @@ impl Level {
 }
 
 /// One traversal.
-#[inline]
+#[inline(always)]
 fn pass<C: Callbacks<Query = Query>>(scene: &EmbreeScene<C>, extent: &Extent, query: &mut Query) {
     let limit = query.limit();
     let Some(segment) = query.view.segment(extent, limit) else { return };

@@ -75,7 +75,7 @@ impl View {
     }
 
     /// The single precision segment through what `extent` holds, from close before it; `None` when it is missed.
-    #[inline]
+    #[inline(always)]
     pub fn segment(&mut self, extent: &Extent, limit: f64) -> Option<Segment> {
         let (low, high) = slab(&extent.bounds, self.origin, self.inverse_dir);
         let high = high.min(limit * self.scale);

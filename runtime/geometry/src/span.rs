@@ -17,20 +17,32 @@ pub struct Span {
 }
 
 impl Span {
+    pub const EMPTY: Span = Span { t0: f64::NAN, t1: f64::NAN, f0: 0, f1: 0 };
+
     /// The line in a ball; `inverse_square` is `1 / dir²`. The closest approach to the centre is found first, so that
     /// nothing cancels for a far origin (Haines, Günther and Akenine-Möller 2019, "Precision improvements for ray/sphere
     /// intersection").
     #[inline]
     pub fn of_ball(center: DVec3, radius: f64, origin: DVec3, dir: DVec3, inverse_square: f64) -> Option<Span> {
+        let span = Span::of_ball_or_empty(center, radius, origin, dir, inverse_square);
+        (!span.is_empty()).then_some(span)
+    }
+
+    /// The same without a branch, for several balls at a time.
+    #[inline]
+    pub fn of_ball_or_empty(center: DVec3, radius: f64, origin: DVec3, dir: DVec3, inverse_square: f64) -> Span {
         let o = origin - center;
         let middle = -o.dot(dir) * inverse_square;
         let square = radius * radius - (o + dir * middle).length_squared();
-        if square <= 0.0 {
-            return None;
-        }
+        // Not a number where the ball is missed.
         let half = (square * inverse_square).sqrt();
-        let (t0, t1) = (middle - half, middle + half);
-        (t0 < t1).then_some(Span { t0, t1, f0: 0, f1: 0 })
+        Span { t0: middle - half, t1: middle + half, f0: 0, f1: 0 }
+    }
+
+    /// Nothing is between its ends, which may be no numbers.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        !(self.t0 < self.t1)
     }
 
     /// The line in an upright box, whose faces are 0 −x, 1 +x, 2 −y, 3 +y, 4 −z, 5 +z; `inverse_dir` is `1 / dir`.

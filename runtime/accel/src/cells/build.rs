@@ -69,7 +69,8 @@ pub fn append_outer(set: &mut CellSet, number: u32, solid: &SolidModel) -> Optio
         return None;
     }
     let (out, leaves) = essential(out)?;
-    let cell = set.push(number, Aabb::EVERYTHING, &leaves, &out, &solid.leaves);
+    let first = set.push_kernels(&solid.leaves);
+    let cell = set.push(number, Aabb::EVERYTHING, &leaves, &out, first);
     Some((cell, core(solid)))
 }
 
@@ -108,6 +109,7 @@ pub fn leaves_of(tokens: &[Token]) -> Vec<u32> {
 struct Builder<'a> {
     set: &'a mut CellSet,
     number: u32,
+    first_kernel: u32,
     solid: &'a SolidModel,
     pad: f64,
     /// States of leaves in the region at hand; `None` is boundary. Only entries of the region's leaves are current.
@@ -120,9 +122,11 @@ struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     fn new(set: &'a mut CellSet, number: u32, solid: &'a SolidModel, budget: &Budget) -> Builder<'a> {
+        let first_kernel = set.push_kernels(&solid.leaves);
         Builder {
             set,
             number,
+            first_kernel,
             solid,
             pad: PAD * solid.tolerance,
             states: vec![None; solid.leaves.len()],
@@ -147,7 +151,7 @@ impl<'a> Builder<'a> {
                 None => {
                     let before = self.set.bytes();
                     let bounds = work.region.dilated(self.solid.tolerance);
-                    self.set.push(self.number, bounds, &leaves, &work.tokens, &self.solid.leaves);
+                    self.set.push(self.number, bounds, &leaves, &work.tokens, self.first_kernel);
                     self.bytes_left = self.bytes_left.saturating_sub(self.set.bytes() - before);
                 }
             }

@@ -9,8 +9,8 @@
 use arsc_geometry::Placed;
 use glam::DVec3;
 
-use crate::cells::CellLeaf;
 use crate::cells::query::{Line, Window};
+use crate::cells::{CellLeaf, Leaves};
 use crate::coincidence::Event;
 use crate::transition::Transition;
 
@@ -57,7 +57,7 @@ pub struct Deferral<'a> {
     pub states: u32,
     /// The leaves that are not solved.
     pub deferred: u32,
-    pub leaves: &'a [CellLeaf],
+    pub leaves: Leaves<'a>,
     pub line: &'a Line<'a>,
     pub window: &'a Window,
 }
@@ -88,7 +88,7 @@ impl Deferral<'_> {
             }
             if right != left && t > low {
                 let flipped = (states >> slot & 1 == 1) != right;
-                let leaf = self.leaves[slot as usize].leaf;
+                let leaf = self.leaves.get(slot as usize).leaf;
                 return Some(Some(Transition { t, leaf, face, entering: right, flipped, shared: false }));
             }
             from = t;

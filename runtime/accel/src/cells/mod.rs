@@ -12,7 +12,7 @@ mod query;
 mod split;
 mod truth_table;
 
-use arsc_geometry::{Aabb, Direct, Placed, Shape};
+use arsc_geometry::{Aabb, Direct, Placed};
 use glam::DVec3;
 
 use crate::expression::Token;
@@ -23,6 +23,8 @@ pub use split::state;
 
 /// Expressions of at most so many leaves are kept as truth tables.
 pub const TABLE_LEAVES: usize = 6;
+/// Leaves of this weight are crossed once per ray, and only if need be.
+const COSTLY: f64 = 5.0;
 /// The margin around a cell in which its expression holds, in tolerances of the solid.
 pub const PAD: f64 = 4.0;
 
@@ -34,10 +36,37 @@ pub struct Cell {
     /// The solid's number among those that share a [`CellSet`].
     pub solid: u32,
     leaf_count: u32,
-    first_leaf: u32,
-    token_count: u32,
     /// The truth table, or the index of the first token.
     code: u64,
+    /// With a truth table: the kernels of the leaves. Otherwise where those are listed, and the number of tokens.
+    ids: [u32; TABLE_LEAVES],
+    /// All leaves are balls or upright boxes.
+    is_plain: bool,
+}
+
+/// The leaves of a cell.
+#[derive(Clone, Copy)]
+pub struct Leaves<'a> {
+    kernels: &'a [CellLeaf],
+    ids: &'a [u32],
+}
+
+impl<'a> Leaves<'a> {
+    #[inline]
+    fn len(self) -> usize {
+        self.ids.len()
+    }
+
+    #[inline]
+    fn get(self, slot: usize) -> &'a CellLeaf {
+        &self.kernels[self.ids[slot] as usize]
+    }
+
+    /// By slots.
+    #[inline]
+    fn iter(self) -> impl Iterator<Item = &'a CellLeaf> {
+        self.ids.iter().map(move |&id| &self.kernels[id as usize])
+    }
 }
 
 /// A leaf of a cell, with what its crossings are computed from where that is little: a cache line.
@@ -75,7 +104,7 @@ impl Kernel {
         match (placed.direct(), placed.shape()) {
             (Some(&Direct::Ball { center, radius }), _) => Kernel::Ball { center, radius },
             (Some(&Direct::Box { min, max }), _) => Kernel::Box { min, max },
-            (_, Shape::Torus { .. } | Shape::Mesh(_)) => Kernel::Costly,
+            (_, shape) if split::weight(shape) >= COSTLY => Kernel::Costly,
             _ => Kernel::Placed,
         }
     }
@@ -85,8 +114,10 @@ impl Kernel {
 #[derive(Clone, Debug, Default)]
 pub struct CellSet {
     pub cells: Vec<Cell>,
-    /// Leaves of each cell, ascending.
-    leaves: Vec<CellLeaf>,
+    /// Leaves of all solids, solid by solid.
+    kernels: Vec<CellLeaf>,
+    /// Kernels of the leaves of cells with many of them, ascending.
+    ids: Vec<u32>,
     /// Expressions of cells with many leaves, over positions in the cell's leaf list.
     tokens: Vec<Token>,
 }
@@ -107,8 +138,13 @@ impl Cell {
 
 impl CellSet {
     #[inline]
-    fn leaves(&self, cell: &Cell) -> &[CellLeaf] {
-        &self.leaves[cell.first_leaf as usize..][..cell.leaf_count as usize]
+    fn leaves<'a>(&'a self, cell: &'a Cell) -> Leaves<'a> {
+        let count = cell.leaf_count as usize;
+        let ids = match cell.ids.get(..count) {
+            Some(ids) => ids,
+            None => &self.ids[cell.ids[0] as usize..][..count],
+        };
+        Leaves { kernels: &self.kernels, ids }
     }
 
     #[inline]
@@ -116,28 +152,44 @@ impl CellSet {
         if cell.leaf_count as usize <= TABLE_LEAVES {
             Code::Table(cell.code)
         } else {
-            Code::Tokens(&self.tokens[cell.code as usize..][..cell.token_count as usize])
+            Code::Tokens(&self.tokens[cell.code as usize..][..cell.ids[1] as usize])
         }
     }
 
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.cells[..]) + size_of_val(&self.leaves[..]) + size_of_val(&self.tokens[..])
+        size_of_val(&self.cells[..])
+            + size_of_val(&self.kernels[..])
+            + size_of_val(&self.ids[..])
+            + size_of_val(&self.tokens[..])
     }
 
-    /// Adds a cell; `leaves` are those of `tokens`, ascending, and index `placed`. Returns its number.
-    pub fn push(&mut self, solid: u32, bounds: Aabb, leaves: &[u32], tokens: &[Token], placed: &[Placed]) -> u32 {
+    /// Adds the leaves of a solid, and returns the number of the first one's kernel.
+    pub fn push_kernels(&mut self, placed: &[Placed]) -> u32 {
+        let first = self.kernels.len() as u32;
+        self.kernels.extend((0..placed.len() as u32).map(|leaf| CellLeaf::new(leaf, placed)));
+        first
+    }
+
+    /// Adds a cell; `leaves` are those of `tokens`, ascending, `first` is their solid's first kernel. Returns the cell's number.
+    pub fn push(&mut self, solid: u32, bounds: Aabb, leaves: &[u32], tokens: &[Token], first: u32) -> u32 {
         let slot = |leaf: u32| leaves.binary_search(&leaf).map_or(0, |i| i as u32);
-        let first_leaf = self.leaves.len() as u32;
-        self.leaves.extend(leaves.iter().map(|&leaf| CellLeaf::new(leaf, placed)));
-        let (code, token_count) = if leaves.len() <= TABLE_LEAVES {
-            (truth_table::table(tokens, slot), 0)
+        let mut ids = [0; TABLE_LEAVES];
+        let code = if leaves.len() <= TABLE_LEAVES {
+            ids.iter_mut().zip(leaves).for_each(|(id, leaf)| *id = first + leaf);
+            truth_table::table(tokens, slot)
         } else {
+            ids[0] = self.ids.len() as u32;
+            ids[1] = tokens.len() as u32;
+            self.ids.extend(leaves.iter().map(|leaf| first + leaf));
             let start = self.tokens.len();
             self.tokens.extend(tokens.iter().map(|token| token.renumbered(slot)));
-            (start as u64, tokens.len() as u32)
+            start as u64
         };
-        let leaf_count = leaves.len() as u32;
-        self.cells.push(Cell { bounds, solid, leaf_count, first_leaf, token_count, code });
+        let plain = |&leaf: &u32| {
+            matches!(self.kernels[(first + leaf) as usize].kernel, Kernel::Ball { .. } | Kernel::Box { .. })
+        };
+        let is_plain = leaves.iter().all(plain);
+        self.cells.push(Cell { bounds, solid, leaf_count: leaves.len() as u32, code, ids, is_plain });
         (self.cells.len() - 1) as u32
     }
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 use crate::cells::deferred::{Deferral, constant_state};
-use crate::cells::{Cell, CellLeaf, CellSet, Code, Kernel};
+use crate::cells::{Cell, CellLeaf, CellSet, Code, Kernel, Leaves, TABLE_LEAVES};
 use crate::coincidence::{Event, Plain, States, settle};
 use crate::counted::Counted;
 use crate::expression::eval;
@@ -79,22 +79,38 @@ impl<'a> Line<'a> {
         self.solid.leaves[leaf.leaf as usize].crossings(self.origin, self.dir)
     }
 
-    #[inline]
+    #[inline(always)]
     fn meet<'s>(&self, leaf: &CellLeaf, scratch: &'s mut Scratch) -> Met<'s> {
         match leaf.kernel {
+            Kernel::Ball { .. } | Kernel::Box { .. } => Met::Span(self.span(leaf)),
+            Kernel::Placed | Kernel::Costly => Met::List(self.list(leaf, scratch)),
+        }
+    }
+
+    /// The stretch in a ball or an upright box; empty for other leaves.
+    #[inline(always)]
+    fn span(&self, leaf: &CellLeaf) -> Span {
+        match leaf.kernel {
             Kernel::Ball { center, radius } => {
-                Met::Span(Span::of_ball(center, radius, self.origin, self.dir, self.inverse_square))
+                Span::of_ball_or_empty(center, radius, self.origin, self.dir, self.inverse_square)
             }
-            Kernel::Box { min, max } => Met::Span(Span::of_box(min, max, self.origin, self.inverse_dir)),
-            Kernel::Placed => Met::List(scratch.keep(self.crossings(leaf))),
-            Kernel::Costly => Met::List(scratch.roots(self.key | u64::from(leaf.leaf), || self.crossings(leaf))),
+            Kernel::Box { min, max } => Span::of_box(min, max, self.origin, self.inverse_dir).unwrap_or(Span::EMPTY),
+            Kernel::Placed | Kernel::Costly => Span::EMPTY,
+        }
+    }
+
+    #[inline(never)]
+    fn list<'s>(&self, leaf: &CellLeaf, scratch: &'s mut Scratch) -> &'s Crossings {
+        match leaf.kernel {
+            Kernel::Costly => scratch.roots(self.key | u64::from(leaf.leaf), || self.crossings(leaf)),
+            _ => scratch.keep(self.crossings(leaf)),
         }
     }
 }
 
 /// Crossings with one leaf: of a shape that is convex and needs no map, or of any other.
 enum Met<'s> {
-    Span(Option<Span>),
+    Span(Span),
     List(&'s Crossings),
 }
 
@@ -118,8 +134,9 @@ impl CellSet {
             visit(transition);
             all
         };
-        match (leaves, self.code(cell)) {
-            ([leaf], Code::Table(table)) => single(leaf, table & 1 == 1, line, window, scratch, visit),
+        match (leaves.len(), self.code(cell)) {
+            (1, Code::Table(table)) => single(leaves.get(0), table & 1 == 1, line, window, scratch, visit),
+            (_, Code::Table(table)) if cell.is_plain => plain(leaves, table, line, window, visit),
             (_, Code::Table(table)) => several(leaves, table, line, window, scratch, all, visit),
             (_, Code::Tokens(tokens)) => {
                 let mut states: SmallVec<[bool; 64]> = SmallVec::with_capacity(leaves.len());
@@ -140,7 +157,7 @@ impl CellSet {
 /// left out.
 #[inline]
 fn gather(
-    leaves: &[CellLeaf],
+    leaves: Leaves,
     deferred: u32,
     line: &Line,
     window: &Window,
@@ -150,7 +167,7 @@ fn gather(
 ) {
     let from = window.from();
     let to = window.to();
-    for (slot, leaf) in (0..).zip(leaves) {
+    for (slot, leaf) in (0..).zip(leaves.iter()) {
         if slot < 32 && deferred >> slot & 1 == 1 {
             continue;
         }
@@ -160,12 +177,12 @@ fn gather(
             }
         };
         let inside = match line.meet(leaf, scratch) {
-            Met::Span(Some(span)) if span.t1 > from => {
+            Met::Span(span) if span.is_empty() || span.t1 <= from => false,
+            Met::Span(span) => {
                 push(span.t0, span.f0);
                 push(span.t1, span.f1);
                 span.t0 <= from
             }
-            Met::Span(_) => false,
             Met::List(crossings) => {
                 crossings.iter().for_each(|(t, face)| push(t, face));
                 crossings.inside_after(from)
@@ -214,9 +231,39 @@ impl States for Bits {
     }
 }
 
+/// A cell with a truth table over balls and upright boxes.
+fn plain(leaves: Leaves, table: u64, line: &Line, window: &Window, visit: impl FnMut(Transition) -> bool) {
+    // First all spans: their arithmetic overlaps.
+    let mut spans = [Span::EMPTY; TABLE_LEAVES];
+    for (span, leaf) in spans.iter_mut().zip(leaves.iter()) {
+        *span = line.span(leaf);
+    }
+    let (from, to) = (window.from(), window.to());
+    let mut events = Events::new();
+    let mut states = 0;
+    for (slot, span) in (0..).zip(&spans[..leaves.len()]) {
+        if span.is_empty() || span.t1 <= from {
+            continue;
+        }
+        if span.t0 <= from {
+            states |= 1 << slot;
+        } else if span.t0 <= to {
+            events.push(Event { t: span.t0, slot, face: span.f0 });
+        }
+        if span.t1 <= to {
+            events.push(Event { t: span.t1, slot, face: span.f1 });
+        }
+    }
+    if events.is_empty() {
+        return;
+    }
+    sort(&mut events);
+    walk(leaves, &events, window, Bits { states, table }, visit);
+}
+
 /// A cell with a truth table.
 fn several(
-    leaves: &[CellLeaf],
+    leaves: Leaves,
     table: u64,
     line: &Line,
     window: &Window,
@@ -281,6 +328,8 @@ pub fn union_transitions(
     scratch: &mut Scratch,
     visit: impl FnMut(Transition) -> bool,
 ) {
+    let ids: SmallVec<[u32; 16]> = (0..leaves.len() as u32).collect();
+    let leaves = Leaves { kernels: leaves, ids: &ids };
     let mut events = Events::new();
     let mut states = SmallVec::with_capacity(leaves.len());
     gather(leaves, 0, line, window, scratch, &mut events, |_, state| states.push(state));
@@ -303,8 +352,8 @@ pub enum Entry {
 #[inline]
 pub fn entry(leaf: &CellLeaf, line: &Line, window: &Window, scratch: &mut Scratch) -> Entry {
     let (t0, face, t1) = match line.meet(leaf, scratch) {
-        Met::Span(None) => return Entry::Missed,
-        Met::Span(Some(span)) => (span.t0, span.f0, span.t1),
+        Met::Span(span) if span.is_empty() => return Entry::Missed,
+        Met::Span(span) => (span.t0, span.f0, span.t1),
         Met::List(crossings) => {
             let roots = crossings.t();
             let passed = roots.iter().take_while(|&&t| t <= window.low).count();
@@ -327,7 +376,7 @@ pub fn entry(leaf: &CellLeaf, line: &Line, window: &Window, scratch: &mut Scratc
 /// Goes along sorted events, cluster by cluster.
 #[inline]
 fn walk(
-    leaves: &[CellLeaf],
+    leaves: Leaves,
     events: &[Event],
     window: &Window,
     mut states: impl States,
@@ -351,7 +400,7 @@ fn walk(
             let Event { t, slot, face } = cluster[owner];
             let flipped = states.get(slot) != after;
             let shared = cluster.len() > 1;
-            let leaf = leaves[slot as usize].leaf;
+            let leaf = leaves.get(slot as usize).leaf;
             if !visit(Transition { t, leaf, face, entering: after, flipped, shared }) {
                 return;
             }
@@ -394,8 +443,8 @@ fn single(
         return;
     }
     let crossings = match line.meet(leaf, scratch) {
-        Met::Span(None) => return,
-        Met::Span(Some(span)) => {
+        Met::Span(span) if span.is_empty() => return,
+        Met::Span(span) => {
             let (enters, thick) = (span.t0 > from, span.t1 > span.t0 + window.tolerance);
             if enters && !(thick && span.t0 <= window.high && found(span.t0, span.f0, true)) {
                 return;

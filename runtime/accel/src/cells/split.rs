@@ -17,7 +17,7 @@ const EDGES: usize = 4;
 /// Cost of intersecting a leaf, in sphere intersections.
 pub fn weight(shape: &Shape) -> f64 {
     match shape {
-        Shape::Torus { .. } => 12.0,
+        Shape::Torus { .. } => 7.0,
         Shape::Cone { .. } | Shape::Cylinder { .. } | Shape::Paraboloid(_) | Shape::Hyperboloid(_) => 2.0,
         Shape::Mesh(_) => 40.0,
         Shape::Prism(_) | Shape::Polyhedron(_) => 6.0,

@@ -13,6 +13,7 @@
 //! A solid of one leaf needs no such care.
 
 use arsc_geometry::Aabb;
+use glam::DVec3;
 use smallvec::SmallVec;
 
 use crate::cells::{self, CellLeaf, Entry, Line, Window};
@@ -55,7 +56,7 @@ impl Members {
         let alone = leaves.len() == 1;
         self.several |= !alone;
         let member = |leaf: u32| Member { solid: number, alone, leaf: CellLeaf::new(leaf, &solid.leaves) };
-        self.members.extend(leaves.into_iter().map(member));
+        self.members.extend(by_place(leaves, solid).into_iter().map(member));
         true
     }
 
@@ -140,7 +141,8 @@ impl Members {
             return;
         }
         let mut met = query.scratch.whole.met.split_off(mark);
-        met.sort_unstable();
+        let place = |&(solid, index): &(u32, u32)| (solid, self.members[index as usize].leaf.leaf);
+        met.sort_unstable_by_key(place);
         met.dedup();
         for group in met.chunk_by(|a, b| a.0 == b.0) {
             if query.blocked {
@@ -188,6 +190,22 @@ fn union_leaves(solid: &SolidModel) -> Option<Vec<u32>> {
     leaves.sort_unstable();
     leaves.dedup();
     Some(leaves)
+}
+
+/// In the order of a Morton curve through their centres, so that neighbours in space are neighbours in memory.
+fn by_place(leaves: Vec<u32>, solid: &SolidModel) -> Vec<u32> {
+    let extent = solid.bounds.extent().max(DVec3::splat(f64::MIN_POSITIVE));
+    let spread = |x: f64| {
+        let cell = (x * 1023.0) as u64;
+        (0..10).fold(0, |code, bit| code | (cell >> bit & 1) << (3 * bit))
+    };
+    let code = |leaf: u32| {
+        let at = (solid.leaves[leaf as usize].bounds().center() - solid.bounds.min) / extent;
+        spread(at.x) | spread(at.y) << 1 | spread(at.z) << 2
+    };
+    let mut placed: Vec<(u64, u32)> = leaves.into_iter().map(|leaf| (code(leaf), leaf)).collect();
+    placed.sort_unstable();
+    placed.into_iter().map(|(_, leaf)| leaf).collect()
 }
 
 /// In how many leaves' boxes the centre of one is, on average.
