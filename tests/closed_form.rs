@@ -10,6 +10,7 @@ mod closed_form {
     mod determinism;
     mod furnace;
     mod irradiance;
+    mod media;
     mod polarisation;
     mod sky;
     mod specular;

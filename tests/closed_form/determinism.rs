@@ -16,7 +16,7 @@ fn scene() -> (World, Camera) {
     stage.environments.push(Environment::constant(&constant(0.2)));
     stage.sphere(DVec3::new(0.0, 0.0, -10.0), 9.0, lambert(0.5));
     let glass = Bsdf::dielectric(&Spectrum::Cauchy { a: 1.5, b_um2: 0.01, c_um4: 0.0 });
-    stage.sphere(DVec3::ZERO, 0.9, Material { bsdf: glass, emitter: None });
+    stage.sphere(DVec3::ZERO, 0.9, Material { bsdf: glass, ..Material::default() });
     stage.sphere(DVec3::new(2.0, 0.0, 1.0), 0.3, emitter(Spectrum::Blackbody { kelvin: 3000.0 }));
     let filter = ReconstructionFilter::new(FilterShape::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 });
     let camera = Camera::perspective(DVec3::new(0.0, -5.0, 1.0), DVec3::ZERO, DVec3::Z, 0.7, [50, 37], filter);

@@ -11,7 +11,7 @@ use super::support::{Estimate, Stage, camera, constant, estimate, lambert, rende
 fn furnace(bsdf: Bsdf, samples: u32) -> Estimate {
     let mut stage = Stage::default();
     stage.environments.push(Environment::constant(&constant(1.0)));
-    stage.sphere(DVec3::ZERO, 1.0, Material { bsdf, emitter: None });
+    stage.sphere(DVec3::ZERO, 1.0, Material { bsdf, ..Material::default() });
     let camera = camera(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO, 0.5, 48);
     estimate(&render(&stage.build(), &camera, samples, 200))
 }
@@ -77,7 +77,8 @@ fn a_sphere_of_thin_glass_vanishes() {
 /// bright and a dark half of the sky, once as an environment and once as an emissive shell.
 #[test]
 fn rough_metal_is_the_same_under_any_light() {
-    let metal = || Material { bsdf: Bsdf::rough_conductor(&constant(0.2), &constant(3.0), facets(0.3)), emitter: None };
+    let metal =
+        || Material { bsdf: Bsdf::rough_conductor(&constant(0.2), &constant(3.0), facets(0.3)), ..Material::default() };
     let camera = camera(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO, 0.3, 32);
     let mut sky = Stage::default();
     sky.environments.push(Environment::constant(&constant(1.0)));
@@ -87,6 +88,7 @@ fn rough_metal_is_the_same_under_any_light() {
     let light = Material {
         bsdf: Bsdf::lambert(&constant(0.0)),
         emitter: Some(arsc_render::AreaEmitter::new(&constant(1.0), true)),
+        ..Material::default()
     };
     shell.sphere(DVec3::ZERO, 20.0, light);
     let [a, b] = [sky, shell].map(|stage| estimate(&render(&stage.build(), &camera, 64, 8)));

@@ -8,7 +8,7 @@ use glam::{DAffine3, DQuat, DVec2, DVec3};
 use super::support::{Stage, camera, constant, emitter, estimate, render, spot_camera, stokes};
 
 fn smooth(bsdf: Bsdf) -> Material {
-    Material { bsdf, emitter: None }
+    Material { bsdf, ..Material::default() }
 }
 
 /// A glass floor under an angle, which mirrors a disk of radiance 1; `roll` turns camera and floor about the view axis.

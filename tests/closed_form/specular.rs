@@ -10,7 +10,7 @@ use super::support::{Estimate, Stage, constant, emitter, estimate, estimate_band
 /// Looks at the ground z <= 0 under an angle; the mirrored direction meets a disk of radiance 1 that faces it.
 fn reflection(bsdf: Bsdf, angle: f64, samples: u32) -> arsc_image::SpectralImage {
     let mut stage = Stage::default();
-    stage.solid(Shape::HalfSpace, DAffine3::IDENTITY, Material { bsdf, emitter: None });
+    stage.solid(Shape::HalfSpace, DAffine3::IDENTITY, Material { bsdf, ..Material::default() });
     let towards = DVec3::new(angle.sin(), 0.0, angle.cos());
     let place = DAffine3::from_rotation_translation(DQuat::from_rotation_arc(DVec3::Z, -towards), towards * 3.0);
     stage.surface(SurfaceShape::Disk { radius: 0.05 }, place, emitter(constant(1.0)));
@@ -78,7 +78,7 @@ fn metal() {
 fn refraction_changes_radiance_by_the_squared_index() {
     let n: f64 = 1.5;
     let mut stage = Stage::default();
-    let glass = Material { bsdf: Bsdf::dielectric(&constant(n)), emitter: None };
+    let glass = Material { bsdf: Bsdf::dielectric(&constant(n)), ..Material::default() };
     stage.solid(Shape::HalfSpace, DAffine3::IDENTITY, glass);
     let place = DAffine3::from_translation(DVec3::new(0.0, 0.0, -1.0));
     stage.surface(SurfaceShape::Disk { radius: 1.0 }, place, emitter(constant(1.0)));

@@ -5,8 +5,8 @@ use arsc_accel::{
 };
 use arsc_image::SpectralImage;
 use arsc_render::{
-    AreaEmitter, Bsdf, Camera, Environment, FilterShape, Light, Material, PathTraceSettings, ReconstructionFilter,
-    World, path_trace,
+    AreaEmitter, Bsdf, Camera, Environment, FilterShape, Light, Material, Media, PathTraceSettings,
+    ReconstructionFilter, World, path_trace,
 };
 use arsc_spectral::Spectrum;
 use glam::{DAffine3, DMat3, DVec3};
@@ -18,6 +18,7 @@ pub struct Stage {
     materials: Vec<Material>,
     pub lights: Vec<Light>,
     pub environments: Vec<Environment>,
+    pub media: Media,
 }
 
 impl Stage {
@@ -73,7 +74,7 @@ impl Stage {
 
     pub fn build(self) -> World {
         let scene = Scene::build(self.geometry, BuildOptions::default()).expect("valid geometry");
-        World::new(scene, self.materials, self.lights, self.environments)
+        World::with_media(scene, self.materials, self.lights, self.environments, self.media)
     }
 }
 
@@ -82,12 +83,16 @@ pub fn constant(value: f64) -> Spectrum {
 }
 
 pub fn lambert(reflectance: f64) -> Material {
-    Material { bsdf: Bsdf::lambert(&constant(reflectance)), emitter: None }
+    Material { bsdf: Bsdf::lambert(&constant(reflectance)), ..Material::default() }
 }
 
 /// Emits towards its normal and scatters nothing.
 pub fn emitter(radiance: Spectrum) -> Material {
-    Material { bsdf: Bsdf::lambert(&constant(0.0)), emitter: Some(AreaEmitter::new(&radiance, false)) }
+    Material {
+        bsdf: Bsdf::lambert(&constant(0.0)),
+        emitter: Some(AreaEmitter::new(&radiance, false)),
+        ..Material::default()
+    }
 }
 
 /// At a height, with the normal downwards.

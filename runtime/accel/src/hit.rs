@@ -89,6 +89,13 @@ impl Hit {
     }
 }
 
+impl AreaSample {
+    /// The segment from a point that is on no surface to this one, ending before its surface. `None` if the two coincide.
+    pub fn segment_from(&self, from: DVec3) -> Option<Ray> {
+        segment(from, offset(self.p, self.p_error, self.ng, from - self.p))
+    }
+}
+
 /// `p` moved off the surface to the side of `towards`.
 fn offset(p: DVec3, p_error: f64, ng: DVec3, towards: DVec3) -> DVec3 {
     p + ng * (2.0 * p_error).copysign(towards.dot(ng))

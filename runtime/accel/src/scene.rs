@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 use arsc_embree::Scene as EmbreeScene;
 use arsc_geometry::{Aabb, Foot, Placed, Ray, Shape, SurfacePoint};
 
+use crate::expression::{Expression, eval};
 use crate::faces::Faces;
 use crate::frame::Frame;
 use crate::level::{Level, Prototype};
@@ -198,6 +199,24 @@ impl Scene {
         let share = faces.iter().map(|&face| shape.face_area(face)).sum::<f64>() / shape.area();
         self.faces.sample_only(part, faces);
         share
+    }
+
+    /// Holds a solid, in the world.
+    pub fn solid_bounds(&self, solid: u32) -> Aabb {
+        let member = &self.members[solid as usize];
+        let bounds = member.model.bounds;
+        member.frame.as_ref().map_or(bounds, |frame| bounds.transformed(&frame.world_from_object))
+    }
+
+    /// Whether a point is in a solid (instances after solids): its leaves' memberships, put together. Takes time linear in
+    /// the leaves.
+    pub fn contains(&self, solid: u32, p: DVec3) -> bool {
+        let Member { model, frame } = &self.members[solid as usize];
+        let p = frame.as_ref().map_or(p, |frame| frame.object_from_world.transform_point3(p));
+        match &model.expression {
+            Expression::Constant(value) => *value,
+            Expression::Tokens(tokens) => eval(tokens, |leaf| model.leaves[leaf as usize].contains(p)),
+        }
     }
 
     /// World area of a part's whole surface; infinite when it is unbounded.

@@ -1,16 +1,17 @@
 //! Materials of the IR → the renderer's, indexed alike.
 
-use arsc_ir::Ir;
+use arsc_ir::{Environment, Ir, NodeKind};
 use arsc_render::bsdf::{MicrofacetShape, Microfacets};
-use arsc_render::{AreaEmitter, Bsdf, Material};
+use arsc_render::{AreaEmitter, Bsdf, Density, Material, Media, Medium, PhaseFunction};
 
 use crate::AssemblyError;
+use crate::geometry::{members, node};
 
 /// One renderer's material for each of [`Ir::materials`].
 pub fn lower(ir: &Ir) -> Result<Vec<Material>, AssemblyError> {
     let lower_one = |material: &arsc_ir::Material| {
         let bsdf = match material.bsdf {
-            Some(index) => lower_bsdf(entry(&ir.bsdfs, index)?)?,
+            Some(index) => lower_bsdf(entry(&ir.bsdfs, index)?),
             None => Bsdf::default(),
         };
         let emitter = match material.emitter {
@@ -20,7 +21,14 @@ pub fn lower(ir: &Ir) -> Result<Vec<Material>, AssemblyError> {
             }
             None => None,
         };
-        Ok(Material { bsdf, emitter })
+        let inside = match material.inside {
+            Some(index) => lower_bsdf(entry(&ir.bsdfs, index)?).index().cloned(),
+            None => None,
+        };
+        if let Some(medium) = material.medium {
+            entry(&ir.media, medium)?;
+        }
+        Ok(Material { bsdf, emitter, medium: material.medium, inside })
     };
     ir.materials.iter().map(lower_one).collect()
 }
@@ -29,8 +37,8 @@ fn entry<T>(table: &[T], index: u32) -> Result<&T, AssemblyError> {
     table.get(index as usize).ok_or(AssemblyError::NotNormal("an attribute is out of range"))
 }
 
-fn lower_bsdf(bsdf: &arsc_ir::Bsdf) -> Result<Bsdf, AssemblyError> {
-    Ok(match bsdf {
+fn lower_bsdf(bsdf: &arsc_ir::Bsdf) -> Bsdf {
+    match bsdf {
         arsc_ir::Bsdf::Lambert { reflectance } => Bsdf::lambert(reflectance),
         arsc_ir::Bsdf::OrenNayar { reflectance, sigma } => Bsdf::oren_nayar(reflectance, *sigma),
         arsc_ir::Bsdf::Mirror { reflectance } => Bsdf::mirror(reflectance),
@@ -43,8 +51,36 @@ fn lower_bsdf(bsdf: &arsc_ir::Bsdf) -> Result<Bsdf, AssemblyError> {
         arsc_ir::Bsdf::Polariser { transmittance, angle } => Bsdf::polariser(transmittance, *angle),
         arsc_ir::Bsdf::Retarder { retardance, angle } => Bsdf::retarder(*retardance, *angle),
         arsc_ir::Bsdf::Depolariser { transmittance } => Bsdf::depolariser(transmittance),
-        arsc_ir::Bsdf::Inert => return Err(AssemblyError::Settings("media are not rendered yet".into())),
-    })
+        arsc_ir::Bsdf::Inert => Bsdf::Inert,
+    }
+}
+
+/// The media, and the one of the scene's space: that of the first member that says.
+pub fn lower_media(ir: &Ir) -> Result<Media, AssemblyError> {
+    let mut atmosphere = None;
+    for &member in members(ir)? {
+        if let NodeKind::Environment(environment) = &node(ir, member)?.kind
+            && let Environment::Medium { medium } = **environment
+        {
+            entry(&ir.media, medium)?;
+            atmosphere = atmosphere.or(Some(medium));
+        }
+    }
+    Ok(Media { media: ir.media.iter().map(lower_medium).collect(), atmosphere })
+}
+
+fn lower_medium(medium: &arsc_ir::Medium) -> Medium {
+    let phase = match medium.phase {
+        arsc_ir::PhaseFunction::Isotropic => PhaseFunction::Isotropic,
+        arsc_ir::PhaseFunction::HenyeyGreenstein { g } => PhaseFunction::HenyeyGreenstein { g },
+        arsc_ir::PhaseFunction::Rayleigh { depolarisation } => PhaseFunction::Rayleigh { depolarisation },
+    };
+    let density = match medium.density {
+        arsc_ir::Density::Uniform => Density::Uniform,
+        arsc_ir::Density::Gaussian { center, sigma } => Density::Gaussian { center, sigma },
+        arsc_ir::Density::Exponential { ground, height } => Density::Exponential { ground, height },
+    };
+    Medium::new(&medium.absorption, &medium.scattering, &medium.emission, phase, density)
 }
 
 fn lower_facets(facets: &arsc_ir::Facets) -> Microfacets {

@@ -66,9 +66,10 @@ impl<'a> Stage<'a> {
         let start = self.host.seconds();
         let materials = materials::lower(self.ir)?;
         let (lights, environments) = lights::lower(self.ir)?;
+        let media = materials::lower_media(self.ir)?;
         let geometry = self.geometry.clone();
         let scene = self.pool.install(|| build(geometry, BuildOptions { strategy, budget: self.settings.budget }))?;
-        let world = Arc::new(self.pool.install(|| World::new(scene, materials, lights, environments)));
+        let world = Arc::new(self.pool.install(|| World::with_media(scene, materials, lights, environments, media)));
         let seconds = self.host.seconds() - start;
         *self.built.borrow_mut() =
             Some(Built { strategy, world: world.clone(), range: WavelengthRange::VISIBLE, seconds });

@@ -24,7 +24,7 @@ struct Stage {
 impl Stage {
     fn solid(&mut self, shape: Shape, at: DVec3, bsdf: Bsdf) {
         let material = MaterialIndex(self.materials.len() as u32);
-        self.materials.push(Material { bsdf, emitter: None });
+        self.materials.push(Material { bsdf, ..Material::default() });
         let leaf = CsgLeaf { shape, world_from_object: DAffine3::from_translation(at), material };
         self.geometry.solids.push(Solid { tree: Csg::Leaf(0), leaves: vec![leaf] });
     }
@@ -32,7 +32,7 @@ impl Stage {
     fn light(&mut self, center: DVec3, size: f64, spectrum: Spectrum) {
         let material = MaterialIndex(self.materials.len() as u32);
         let emitter = Some(AreaEmitter::new(&spectrum, false));
-        self.materials.push(Material { bsdf: Bsdf::lambert(&Spectrum::Constant(0.0)), emitter });
+        self.materials.push(Material { bsdf: Bsdf::lambert(&Spectrum::Constant(0.0)), emitter, ..Material::default() });
         let place = DAffine3 { matrix3: DMat3::from_rotation_x(std::f64::consts::PI), translation: center };
         let shape = SurfaceShape::Rectangle { size: DVec2::splat(size) };
         self.geometry.surfaces.push(Surface { shape, world_from_object: place, material });

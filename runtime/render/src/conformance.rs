@@ -1,4 +1,4 @@
-//! What every bsdf and every light must obey, instantiated by a line each.
+//! What every bsdf, phase function and light must obey, instantiated by a line each.
 //!
 //! Random numbers are fixed by seed. Chi-square tests use 200 000 samples and a threshold at a false-alarm rate of 1e-5 per
 //! test. Means of n samples are compared within five standard errors (false-alarm rate 6e-7).
@@ -7,6 +7,7 @@ mod area_lights;
 mod bsdfs;
 mod lights;
 mod mueller;
+mod phases;
 
 use std::f64::consts::TAU;
 

@@ -22,10 +22,10 @@ use crate::polarisation::{Mueller, Polarisation, Stokes};
 use crate::sampler::Sampler;
 use crate::world::{LightSource, World};
 
-const ROULETTE_DEPTH: u32 = 3;
+pub(crate) const ROULETTE_DEPTH: u32 = 3;
 
 /// Largest probability that roulette lets a path go on: an albedo of one still ends.
-const ROULETTE_MAX: f32 = 0.99;
+pub(crate) const ROULETTE_MAX: f32 = 0.99;
 
 /// Pairs of sample dimensions of the camera, then of each scattering event.
 pub(crate) const CAMERA_PAIRS: u32 = 2;

@@ -15,6 +15,7 @@ use crate::film::{Bands, Film, Tile};
 use crate::integrator::incident_radiance;
 use crate::polarisation::{Polarisation, Polarised, Unpolarised};
 use crate::sampler::Sampler;
+use crate::volume;
 use crate::world::World;
 
 /// What `path_trace` is asked for.
@@ -75,7 +76,12 @@ const WAVELENGTHS: u32 = 1;
 /// Renders on the threads of the current rayon pool.
 pub fn path_trace(world: &World, camera: &Camera, settings: &PathTraceSettings, progress: &dyn Progress) -> Film {
     let mut film = Film::new(camera.resolution(), settings.crop, settings.bands, settings.polarised);
-    let trace = if settings.polarised { trace_tile::<Polarised> } else { trace_tile::<Unpolarised> };
+    let trace = match (settings.polarised, world.needs_interiors()) {
+        (false, false) => trace_tile::<Unpolarised, false>,
+        (false, true) => trace_tile::<Unpolarised, true>,
+        (true, false) => trace_tile::<Polarised, false>,
+        (true, true) => trace_tile::<Polarised, true>,
+    };
     let distribution = WavelengthDistribution::new(settings.wavelengths, settings.bands.observer);
     let mut done = 0;
     while done < settings.samples && !film.tiles.is_empty() && !progress.cancelled() {
@@ -91,7 +97,8 @@ pub fn path_trace(world: &World, camera: &Camera, settings: &PathTraceSettings, 
     film
 }
 
-fn trace_tile<P: Polarisation>(
+/// `MEDIA`: paths know what fills the space around them.
+fn trace_tile<P: Polarisation, const MEDIA: bool>(
     world: &World,
     camera: &Camera,
     settings: &PathTraceSettings,
@@ -109,7 +116,12 @@ fn trace_tile<P: Polarisation>(
                 let center = DVec2::new(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
                 let ray = camera.ray(center + position.offset);
                 let horizontal = camera.horizontal(&ray);
-                let light = incident_radiance::<P>(world, ray, horizontal, &wavelengths, &sampler, settings.max_depth);
+                let depth = settings.max_depth;
+                let light = if MEDIA {
+                    volume::incident_radiance::<P>(world, ray, horizontal, &wavelengths, &sampler, depth)
+                } else {
+                    incident_radiance::<P>(world, ray, horizontal, &wavelengths, &sampler, depth)
+                };
                 tile.add(x, y, &wavelengths, &light, position.weight);
             }
         }

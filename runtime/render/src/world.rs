@@ -6,17 +6,31 @@
 //! scattered rays only.
 
 use arsc_accel::{Hit, Part, PartId, Scene};
-use arsc_spectral::WavelengthRange;
+use arsc_spectral::{DenseSpectrum, WavelengthRange};
 
 use crate::bsdf::Bsdf;
 use crate::emitter::AreaEmitter;
+use crate::interiors::{FillingId, Interiors};
 use crate::light::{AliasTable, Environment, Light};
+use crate::medium::Medium;
 
 /// Scattering and emission of one material; indexed by [`arsc_accel::MaterialIndex`].
 #[derive(Clone, Debug, Default)]
 pub struct Material {
     pub bsdf: Bsdf,
     pub emitter: Option<AreaEmitter>,
+    /// What fills the solid behind the wall: an entry of [`Media::media`].
+    pub medium: Option<u32>,
+    /// Index of refraction behind the wall, where it is not the bsdf's own.
+    pub inside: Option<DenseSpectrum>,
+}
+
+/// Participating media of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Media {
+    pub media: Vec<Medium>,
+    /// Fills all space that no solid fills.
+    pub atmosphere: Option<u32>,
 }
 
 /// Share of the light samples that is spread evenly over the lights.
@@ -45,21 +59,32 @@ pub struct World {
     /// Probability that light sampling chooses a part; by [`PartId`].
     part_probability: Vec<f64>,
     environment_probability: Vec<f64>,
+    media: Vec<Medium>,
+    interiors: Interiors,
 }
 
 impl World {
     /// `materials` is indexed by [`arsc_accel::MaterialIndex`]; a part whose material is missing gets the default.
-    pub fn new(
+    pub fn new(geometry: Scene, materials: Vec<Material>, lights: Vec<Light>, environments: Vec<Environment>) -> World {
+        World::with_media(geometry, materials, lights, environments, Media::default())
+    }
+
+    /// The same, with participating media.
+    pub fn with_media(
         geometry: Scene,
         mut materials: Vec<Material>,
         lights: Vec<Light>,
         environments: Vec<Environment>,
+        media: Media,
     ) -> World {
         let faces = |i: usize| geometry.face_materials(PartId(i as u32)).iter().map(|(_, material)| *material);
         let shown = |(i, part): (usize, &Part)| faces(i).chain([part.material]).map(|m| m.0 as usize + 1).max();
         let needed = geometry.parts().iter().enumerate().filter_map(shown).max().unwrap_or(0);
         materials.resize_with(materials.len().max(needed), Material::default);
+        let interiors = Interiors::new(&geometry, &materials, media.atmosphere);
         let mut world = World {
+            media: media.media,
+            interiors,
             part_probability: vec![0.0; geometry.parts().len()],
             environment_probability: vec![0.0; environments.len()],
             geometry,
@@ -156,6 +181,20 @@ impl World {
     /// The lights that light sampling chooses from, with their powers in W over the rendered range.
     pub fn light_sources(&self) -> impl Iterator<Item = (LightSource, f64)> + '_ {
         self.sources.iter().copied().zip(self.powers.iter().copied())
+    }
+
+    /// Media and nested dielectrics: paths have to know what fills the space around them.
+    pub(crate) fn needs_interiors(&self) -> bool {
+        self.interiors.matters()
+    }
+
+    pub(crate) fn interiors(&self) -> &Interiors {
+        &self.interiors
+    }
+
+    #[inline]
+    pub(crate) fn medium(&self, filling: FillingId) -> Option<&Medium> {
+        self.interiors.medium(filling).map(|medium| &self.media[medium as usize])
     }
 
     #[inline]

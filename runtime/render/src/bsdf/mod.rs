@@ -53,6 +53,8 @@ pub enum Bsdf {
     RoughConductor(RoughConductor),
     RoughDielectric(RoughDielectric),
     Sheet(Sheet),
+    /// No interface: light goes straight on.
+    Inert,
 }
 
 /// A sampled direction.
@@ -143,9 +145,12 @@ impl Bsdf {
             | Bsdf::Phong(_)
             | Bsdf::RoughConductor(_)
             | Bsdf::RoughDielectric(_) => false,
-            Bsdf::Mirror(_) | Bsdf::Dielectric(_) | Bsdf::Conductor(_) | Bsdf::ThinDielectric(_) | Bsdf::Sheet(_) => {
-                true
-            }
+            Bsdf::Mirror(_)
+            | Bsdf::Dielectric(_)
+            | Bsdf::Conductor(_)
+            | Bsdf::ThinDielectric(_)
+            | Bsdf::Sheet(_)
+            | Bsdf::Inert => true,
         }
     }
 
@@ -163,29 +168,14 @@ impl Bsdf {
     /// The value f(wo, wi) in sr^-1 without the cosine; zero for specular lobes.
     #[inline]
     pub fn eval<P: Polarisation>(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> P::Mueller {
-        let depolarised = match self {
-            Bsdf::RoughConductor(rough) => return rough.eval::<P>(wo, wi, wavelengths),
-            Bsdf::RoughDielectric(rough) => return rough.eval::<P>(wo, wi, wavelengths),
-            Bsdf::Lambert(lambert) => lambert.eval(wo, wi, wavelengths),
-            Bsdf::OrenNayar(oren_nayar) => oren_nayar.eval(wo, wi, wavelengths),
-            Bsdf::Phong(phong) => phong.eval(wo, wi, wavelengths),
-            _ => SampledSpectrum::ZERO,
-        };
-        P::Mueller::depolariser(depolarised)
+        self.eval_between::<P>(None, wo, wi, wavelengths)
     }
 
     /// Density per steradian with which [`Bsdf::sample`] gives `wi`, were each of the wavelengths the hero; zero for
     /// specular lobes.
     #[inline]
     pub fn pdf(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> SampledSpectrum {
-        let same = |pdf: f64| SampledSpectrum::splat(pdf as f32);
-        match self {
-            Bsdf::Lambert(_) | Bsdf::OrenNayar(_) => same(cosine_pdf(wo, wi)),
-            Bsdf::Phong(phong) => same(phong.pdf(wo, wi)),
-            Bsdf::RoughConductor(rough) => same(rough.pdf(wo, wi)),
-            Bsdf::RoughDielectric(rough) => rough.pdf(wo, wi, wavelengths),
-            _ => SampledSpectrum::ZERO,
-        }
+        self.pdf_between(None, wo, wi, wavelengths)
     }
 
     /// A direction; `u` picks it within a lobe, `u_lobe` picks the lobe. `None` where nothing is scattered.
@@ -197,17 +187,93 @@ impl Bsdf {
         u_lobe: f64,
         wavelengths: &SampledWavelengths,
     ) -> Option<BsdfSample<P>> {
+        self.sample_between(None, wo, u, u_lobe, wavelengths)
+    }
+
+    /// As [`Bsdf::eval`]; `relative` is the index behind the wall over the one before it, `None` for a solid in vacuum.
+    #[inline]
+    pub fn eval_between<P: Polarisation>(
+        &self,
+        relative: Option<SampledSpectrum>,
+        wo: DVec3,
+        wi: DVec3,
+        wavelengths: &SampledWavelengths,
+    ) -> P::Mueller {
+        let depolarised = match self {
+            Bsdf::RoughConductor(rough) => return rough.eval::<P>(wo, wi, wavelengths),
+            Bsdf::RoughDielectric(rough) => return rough.eval::<P>(wo, wi, rough.ior(relative, wavelengths)),
+            Bsdf::Lambert(lambert) => lambert.eval(wo, wi, wavelengths),
+            Bsdf::OrenNayar(oren_nayar) => oren_nayar.eval(wo, wi, wavelengths),
+            Bsdf::Phong(phong) => phong.eval(wo, wi, wavelengths),
+            _ => SampledSpectrum::ZERO,
+        };
+        P::Mueller::depolariser(depolarised)
+    }
+
+    /// As [`Bsdf::pdf`], between two media.
+    #[inline]
+    pub fn pdf_between(
+        &self,
+        relative: Option<SampledSpectrum>,
+        wo: DVec3,
+        wi: DVec3,
+        wavelengths: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        let same = |pdf: f64| SampledSpectrum::splat(pdf as f32);
+        match self {
+            Bsdf::Lambert(_) | Bsdf::OrenNayar(_) => same(cosine_pdf(wo, wi)),
+            Bsdf::Phong(phong) => same(phong.pdf(wo, wi)),
+            Bsdf::RoughConductor(rough) => same(rough.pdf(wo, wi)),
+            Bsdf::RoughDielectric(rough) => rough.pdf(wo, wi, rough.ior(relative, wavelengths)),
+            _ => SampledSpectrum::ZERO,
+        }
+    }
+
+    /// As [`Bsdf::sample`], between two media.
+    #[inline]
+    pub fn sample_between<P: Polarisation>(
+        &self,
+        relative: Option<SampledSpectrum>,
+        wo: DVec3,
+        u: [f64; 2],
+        u_lobe: f64,
+        wavelengths: &SampledWavelengths,
+    ) -> Option<BsdfSample<P>> {
         match self {
             Bsdf::Lambert(lambert) => lambert.sample(wo, u, wavelengths),
             Bsdf::OrenNayar(oren_nayar) => oren_nayar.sample(wo, u, wavelengths),
             Bsdf::Mirror(mirror) => mirror.sample(wo, wavelengths),
-            Bsdf::Dielectric(dielectric) => dielectric.sample(wo, u_lobe, wavelengths),
+            Bsdf::Dielectric(dielectric) => match relative {
+                None => dielectric.sample(wo, u_lobe, wavelengths),
+                Some(relative) => dielectric::sample(relative, wo, u_lobe),
+            },
             Bsdf::Conductor(conductor) => conductor.sample(wo, wavelengths),
             Bsdf::ThinDielectric(pane) => pane.sample(wo, u_lobe, wavelengths),
             Bsdf::Phong(phong) => phong.sample(wo, u, wavelengths),
             Bsdf::RoughConductor(rough) => rough.sample(wo, u, wavelengths),
-            Bsdf::RoughDielectric(rough) => rough.sample(wo, u, u_lobe, wavelengths),
+            Bsdf::RoughDielectric(rough) => rough.sample(wo, u, u_lobe, rough.ior(relative, wavelengths)),
             Bsdf::Sheet(sheet) => sheet.sample(wo, wavelengths),
+            Bsdf::Inert => Some(BsdfSample::straight_on(wo)),
+        }
+    }
+
+    /// Light passes through a closed wall of it, so that it matters what fills the solid.
+    pub fn is_transmissive(&self) -> bool {
+        matches!(self, Bsdf::ThinDielectric(_) | Bsdf::Sheet(_) | Bsdf::Inert) || self.index().is_some()
+    }
+
+    /// It does something to light.
+    pub fn has_interface(&self) -> bool {
+        !matches!(self, Bsdf::Inert)
+    }
+
+    /// Index of refraction of what a solid of it holds.
+    #[inline]
+    pub fn index(&self) -> Option<&DenseSpectrum> {
+        match self {
+            Bsdf::Dielectric(dielectric) => Some(dielectric.index()),
+            Bsdf::RoughDielectric(rough) => Some(rough.index()),
+            _ => None,
         }
     }
 }
@@ -264,6 +330,13 @@ impl<P: Polarisation> BsdfSample<P> {
     /// Light that goes on without being bent.
     #[inline]
     fn straight(wo: DVec3, weight: P::Mueller) -> BsdfSample<P> {
+        BsdfSample { wi: -wo, weight, path_pdf: SampledSpectrum::ONE, pdf: 1.0, specular: true, eta: 1.0 }
+    }
+
+    /// No event at all.
+    fn straight_on(wo: DVec3) -> BsdfSample<P> {
+        let neutral = DiattenuatingRetarder::neutral(SampledSpectrum::ONE);
+        let weight = P::Mueller::diattenuating_retarder(&neutral, s_axis(DVec3::Z, wo), wo, -wo);
         BsdfSample { wi: -wo, weight, path_pdf: SampledSpectrum::ONE, pdf: 1.0, specular: true, eta: 1.0 }
     }
 

@@ -15,7 +15,12 @@ use crate::fresnel::{self, Interface};
 use crate::polarisation::{Mueller, Polarisation, s_axis};
 
 /// Distance of the index from 1, at least.
-const INDEX_STEP: f64 = 1e-4;
+const INDEX_STEP: f32 = 1e-4;
+
+/// The index, kept away from 1.
+fn apart(index: f32) -> f32 {
+    if (index - 1.0).abs() < INDEX_STEP { 1.0 + INDEX_STEP } else { index }
+}
 
 #[derive(Clone, Debug)]
 pub struct RoughDielectric {
@@ -37,8 +42,7 @@ struct Facet {
 
 impl RoughDielectric {
     pub(super) fn new(ior: &Spectrum, facets: Microfacets) -> RoughDielectric {
-        let apart = |n: f64| if (n - 1.0).abs() < INDEX_STEP { 1.0 + INDEX_STEP } else { n };
-        let ior = DenseSpectrum::from_fn(|lambda_nm| apart(ior.eval(lambda_nm)));
+        let ior = DenseSpectrum::from_fn(|lambda_nm| f64::from(apart(ior.eval(lambda_nm) as f32)));
         RoughDielectric { ior: limited_index(ior), facets }
     }
 
@@ -72,14 +76,23 @@ impl RoughDielectric {
         (pdf.is_finite() && factor.is_finite()).then_some(Facet { h, interface, pdf, factor })
     }
 
+    pub(super) fn index(&self) -> &DenseSpectrum {
+        &self.ior
+    }
+
+    /// The index behind the interface over that before it: `relative`, or for vacuum outside.
+    #[inline]
+    pub(super) fn ior(&self, relative: Option<SampledSpectrum>, wavelengths: &SampledWavelengths) -> SampledSpectrum {
+        relative.map_or_else(|| self.ior.sample(wavelengths), |index| index.map(apart))
+    }
+
     #[inline]
     fn relative(wo: DVec3, index: f32) -> f64 {
         if wo.z > 0.0 { f64::from(index) } else { 1.0 / f64::from(index) }
     }
 
     #[inline]
-    fn facets_of(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> [Option<Facet>; 4] {
-        let ior = self.ior.sample(wavelengths);
+    fn facets_of(&self, wo: DVec3, wi: DVec3, ior: SampledSpectrum) -> [Option<Facet>; 4] {
         let [a, b, c, d] = ior.0.to_array().map(|index| Self::relative(wo, index));
         let hero = self.facet(wo, wi, a);
         if ior.is_flat() {
@@ -107,14 +120,14 @@ impl RoughDielectric {
     }
 
     #[inline]
-    pub(super) fn eval<P: Polarisation>(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> P::Mueller {
-        Self::value::<P>(wo, wi, &self.facets_of(wo, wi, wavelengths), 1.0)
+    pub(super) fn eval<P: Polarisation>(&self, wo: DVec3, wi: DVec3, ior: SampledSpectrum) -> P::Mueller {
+        Self::value::<P>(wo, wi, &self.facets_of(wo, wi, ior), 1.0)
     }
 
     /// Density of `wi` at each wavelength.
     #[inline]
-    pub(super) fn pdf(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> SampledSpectrum {
-        let [a, b, c, d] = self.facets_of(wo, wi, wavelengths).map(|f| f.map_or(0.0, |facet| facet.pdf as f32));
+    pub(super) fn pdf(&self, wo: DVec3, wi: DVec3, ior: SampledSpectrum) -> SampledSpectrum {
+        let [a, b, c, d] = self.facets_of(wo, wi, ior).map(|f| f.map_or(0.0, |facet| facet.pdf as f32));
         SampledSpectrum(Vec4::new(a, b, c, d))
     }
 
@@ -124,7 +137,7 @@ impl RoughDielectric {
         wo: DVec3,
         u: [f64; 2],
         u_lobe: f64,
-        wavelengths: &SampledWavelengths,
+        ior: SampledSpectrum,
     ) -> Option<BsdfSample<P>> {
         if wo.z == 0.0 {
             return None;
@@ -135,7 +148,7 @@ impl RoughDielectric {
         if oh <= 0.0 {
             return None;
         }
-        let eta = Self::relative(wo, self.ior.sample(wavelengths).hero());
+        let eta = Self::relative(wo, ior.hero());
         let interface = Interface::new(oh.min(1.0), eta);
         let reflected = u_lobe < interface.reflectance();
         let wi = if reflected { h * (2.0 * oh) - wo } else { h * (oh / eta - interface.cos_t) - wo / eta };
@@ -143,7 +156,7 @@ impl RoughDielectric {
         if (wi.z * wo.z > 0.0) != reflected {
             return None;
         }
-        let facets = self.facets_of(wo, wi, wavelengths);
+        let facets = self.facets_of(wo, wi, ior);
         let pdf = facets[0]?.pdf;
         if !(pdf > 0.0) {
             return None;
