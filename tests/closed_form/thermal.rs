@@ -76,7 +76,7 @@ fn any_range_of_wavelengths_is_rendered_without_bias() {
 
         let mut stage = Stage::default();
         let glass = Bsdf::dielectric(&Spectrum::Cauchy { a: 1.5, b_um2: 0.02, c_um4: 0.0 });
-        stage.sphere(DVec3::ZERO, 1.0, Material { bsdf: glass, emitter: None });
+        stage.sphere(DVec3::ZERO, 1.0, Material { bsdf: glass, ..Material::default() });
         stage.environments.push(Environment::constant(&constant(1.0)));
         let settings = PathTraceSettings { max_depth: 100, ..settings };
         let image = path_trace(&stage.build(), &view, &settings, &()).to_image();
