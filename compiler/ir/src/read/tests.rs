@@ -1,0 +1,268 @@
+//! What is written reads back, and what has no form is refused where it has none.
+
+use super::*;
+use crate::{Builder, verify};
+use arsc_geometry::DAffine3;
+use proptest::prelude::*;
+
+fn number() -> impl Strategy2<Value = f64> {
+    prop_oneof![-10.0..10.0f64, Just(-0.0), Just(1e-300), Just(0.1), -1e300..1e300f64]
+}
+
+// The name of proptest's trait is taken by CSG strategies.
+use proptest::strategy::Strategy as Strategy2;
+
+fn positive() -> impl Strategy2<Value = f64> {
+    prop_oneof![1e-3..1e3f64, Just(f64::MIN_POSITIVE)]
+}
+
+fn vector() -> impl Strategy2<Value = DVec3> {
+    [number(), number(), number()].prop_map(DVec3::from_array)
+}
+
+fn any_spectrum() -> impl Strategy2<Value = Spectrum> {
+    let leaf = prop_oneof![
+        number().prop_map(Spectrum::Constant),
+        positive().prop_map(|kelvin| Spectrum::Blackbody { kelvin }),
+        (number(), positive(), number()).prop_map(|(center_nm, sigma_nm, peak)| Spectrum::Gaussian {
+            center_nm,
+            sigma_nm,
+            peak
+        }),
+        (number(), prop::collection::vec((number(), number()), 1..5)).prop_map(|(a, terms)| {
+            let (b, c_um2): (Vec<f64>, Vec<f64>) = terms.into_iter().unzip();
+            Spectrum::Sellmeier { a, b: b.into(), c_um2: c_um2.into() }
+        }),
+        (number(), number(), number()).prop_map(|(a, b_um2, c_um4)| Spectrum::Cauchy { a, b_um2, c_um4 }),
+        [number(), number(), number()].prop_map(|coefficients| Spectrum::Sigmoid { coefficients }),
+        prop::collection::vec(number(), 1..5).prop_map(|values| Spectrum::Tabulated {
+            lambda_nm: (0..values.len()).map(|i| 400.0 + i as f64).collect(),
+            values: values.into(),
+        }),
+    ];
+    leaf.prop_recursive(3, 8, 2, |inner| {
+        prop_oneof![
+            (number(), inner.clone())
+                .prop_map(|(factor, spectrum)| Spectrum::Scaled { factor, spectrum: Arc::new(spectrum) }),
+            (positive(), inner.clone()).prop_map(|(thickness, transmission)| Spectrum::Absorbance {
+                transmission: Arc::new(transmission),
+                thickness
+            }),
+            (inner.clone(), inner.clone()).prop_map(|(a, b)| Spectrum::Product(Arc::new(a), Arc::new(b))),
+            (inner.clone(), inner).prop_map(|(a, b)| Spectrum::Sum(Arc::new(a), Arc::new(b))),
+        ]
+    })
+}
+
+fn any_map() -> impl Strategy2<Value = DAffine3> {
+    prop_oneof![
+        Just(DAffine3::IDENTITY),
+        vector().prop_map(DAffine3::from_translation),
+        (-3.0..3.0f64, [0.1..5.0f64, 0.1..5.0f64, -5.0..-0.1f64], vector()).prop_map(|(angle, scale, by)| {
+            let turned = DAffine3::from_rotation_z(angle) * DAffine3::from_scale(DVec3::from_array(scale));
+            DAffine3 { translation: by, ..turned }
+        }),
+    ]
+}
+
+fn tetrahedron() -> Arc<TriangleMesh> {
+    Arc::new(TriangleMesh {
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+        ..TriangleMesh::default()
+    })
+}
+
+fn any_leaf() -> impl Strategy2<Value = Leaf> {
+    let mesh_solid = "[a-z]{1,8}".prop_map(|path| {
+        let (mesh, _) = ClosedMesh::new(path.into(), (*tetrahedron()).clone()).unwrap();
+        Shape::Mesh(Arc::new(mesh))
+    });
+    let shape = prop_oneof![9 => crate::shape_text::tests::any_shape(), 1 => mesh_solid];
+    let surface = prop_oneof![
+        [vector(), vector(), vector()].prop_map(Surface::Triangle),
+        [vector(), vector(), vector(), vector()].prop_map(Surface::Quad),
+        (positive(), positive()).prop_map(|(width, depth)| Surface::Rectangle { width, depth }),
+        positive().prop_map(|radius| Surface::Disk { radius }),
+        Just(Surface::Plane),
+        "[ -~é\n\"\\\\]{1,8}".prop_map(|path| Surface::Mesh { path: path.into(), mesh: tetrahedron() }),
+    ];
+    prop_oneof![
+        (shape, any_map()).prop_map(|(shape, parent_from_object)| Leaf::Solid {
+            shape,
+            parent_from_object,
+            material: None
+        }),
+        (surface, any_map()).prop_map(|(surface, parent_from_object)| Leaf::Surface {
+            surface,
+            parent_from_object,
+            material: None
+        }),
+    ]
+}
+
+/// What a node is made of, with operands as numbers to be taken modulo the nodes so far.
+#[derive(Clone, Debug)]
+enum Recipe {
+    Leaf(Leaf),
+    Boolean(u8, Vec<usize>),
+    Transform(DAffine3, usize),
+    Attributes(Attributes, bool, usize),
+    Light(Spectrum, bool),
+    Sky(Spectrum, bool),
+}
+
+fn any_recipe() -> impl Strategy2<Value = Recipe> {
+    let cut = prop_oneof![Just(None), Just(Some(CutRule::Inherit)), Just(Some(CutRule::Bsdf(1)))];
+    let (bsdf, emitter, medium) = (prop::option::of(0..2u32), prop::option::of(0..1u32), prop::option::of(0..3u32));
+    let bundle = (bsdf, emitter, medium, cut, prop::option::of(0..9u32))
+        .prop_map(|(bsdf, emitter, medium, cut, face)| Attributes { bsdf, emitter, medium, cut, face });
+    prop_oneof![
+        4 => any_leaf().prop_map(Recipe::Leaf),
+        4 => (0..4u8, prop::collection::vec(any::<usize>(), 1..4)).prop_map(|(kind, of)| Recipe::Boolean(kind, of)),
+        2 => (any_map(), any::<usize>()).prop_map(|(map, of)| Recipe::Transform(map, of)),
+        2 => (bundle, any::<bool>(), any::<usize>()).prop_map(|(a, inner, of)| Recipe::Attributes(a, inner, of)),
+        1 => (any_spectrum(), any::<bool>()).prop_map(|(s, distant)| Recipe::Light(s, distant)),
+        1 => (any_spectrum(), any::<bool>()).prop_map(|(s, sky)| Recipe::Sky(s, sky)),
+    ]
+}
+
+fn any_ir() -> impl Strategy2<Value = Ir> {
+    let tables = (any_spectrum(), any_spectrum(), number());
+    (prop::collection::vec(any_recipe(), 1..30), tables, any::<[u32; 3]>()).prop_map(|(recipes, tables, numbers)| {
+        let mut b = Builder::new();
+        b.bsdf(Bsdf::OrenNayar { reflectance: tables.0.clone(), sigma: tables.2 });
+        b.bsdf(Bsdf::Conductor { eta: tables.0.clone(), k: tables.1.clone() });
+        let media = [
+            (PhaseFunction::Isotropic, Density::Uniform),
+            (PhaseFunction::HenyeyGreenstein { g: tables.2 }, Density::Gaussian { center: DVec3::X, sigma: tables.2 }),
+            (
+                PhaseFunction::Rayleigh { depolarisation: tables.2 },
+                Density::Exponential { ground: -0.0, height: tables.2 },
+            ),
+        ];
+        for (phase, density) in media {
+            let (absorption, scattering) = (tables.0.clone(), tables.1.clone());
+            b.medium(Medium { absorption, scattering, emission: tables.0.clone(), phase, density });
+        }
+        b.bsdf(Bsdf::Inert);
+        let distribution = Distribution::ALL[numbers[1] as usize % 3];
+        let facets = Facets { distribution, alpha: [0.1, 0.7] };
+        b.bsdf(Bsdf::RoughConductor { eta: tables.1.clone(), k: tables.0.clone(), facets });
+        b.bsdf(Bsdf::RoughDielectric { ior: tables.1.clone(), facets });
+        b.bsdf(Bsdf::ThinDielectric { ior: tables.0.clone() });
+        b.bsdf(Bsdf::Phong { reflectance: tables.1.clone(), exponent: tables.2 });
+        b.bsdf(Bsdf::Polariser { transmittance: tables.0.clone(), angle: tables.2 });
+        b.bsdf(Bsdf::Retarder { retardance: tables.2, angle: -0.5 });
+        b.bsdf(Bsdf::Depolariser { transmittance: tables.0.clone() });
+        b.emitter(Emitter { radiance: tables.1, two_sided: numbers[0] % 2 == 0 });
+        for (i, recipe) in recipes.into_iter().enumerate() {
+            let origin = Span { source: SourceId(i as u32), start: numbers[1] / 2, end: u32::MAX };
+            let id = |of: usize| NodeId((of % i.max(1)) as u32);
+            let kind = match recipe {
+                Recipe::Boolean(kind, of) if i > 0 => {
+                    let of = of.into_iter().map(id).collect();
+                    [NodeKind::Union, NodeKind::Intersection, NodeKind::Difference, NodeKind::Group][kind as usize](of)
+                }
+                Recipe::Transform(map, of) if i > 0 => {
+                    NodeKind::Transform { parent_from_child: Box::new(map), child: id(of) }
+                }
+                Recipe::Attributes(attributes, inner, of) if i > 0 => {
+                    let precedence = if inner { Precedence::Inner } else { Precedence::Outer };
+                    NodeKind::Attributes { attributes, precedence, child: id(of) }
+                }
+                Recipe::Light(intensity, false) => NodeKind::Light(Box::new(Light::Point { intensity })),
+                Recipe::Light(irradiance, true) => {
+                    NodeKind::Light(Box::new(Light::Distant { irradiance, direction: DVec3::Z }))
+                }
+                Recipe::Sky(radiance, false) => NodeKind::Environment(Box::new(Environment::Constant { radiance })),
+                Recipe::Sky(_, true) if numbers[0] % 3 == 0 => {
+                    NodeKind::Environment(Box::new(Environment::Medium { medium: 2 }))
+                }
+                Recipe::Sky(_, true) => NodeKind::Environment(Box::new(Environment::HosekWilkie {
+                    turbidity: tables.2,
+                    ground_albedo: 0.1,
+                    sun: DVec3::new(-0.0, 0.6, 0.8),
+                    solar_disc: numbers[2] % 2 == 0,
+                    scale: 1.0,
+                })),
+                Recipe::Leaf(leaf) => NodeKind::Leaf(Box::new(leaf)),
+                _ => NodeKind::Union(Vec::new()),
+            };
+            b.push(kind, origin);
+        }
+        let last = NodeId(b.len() as u32 - 1);
+        b.camera(Camera {
+            projection: Projection::Perspective { fov: tables.2 },
+            eye: DVec3::X,
+            target: DVec3::new(tables.2, -0.0, 1e-9),
+            up: DVec3::Z,
+            resolution: [numbers[0], numbers[1]],
+            filter: Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 },
+        });
+        let at = Span::new(SourceId(0), 3, 9);
+        let wavelengths = WavelengthRange::new(300.0, 777.5).unwrap();
+        let (band_nm, observer) = (tables.2, Observer::Cie2015Deg10);
+        let trace = PathTrace {
+            samples: numbers[2],
+            max_depth: 3,
+            seed: u64::MAX,
+            wavelengths,
+            band_nm,
+            observer,
+            polarised: true,
+        };
+        b.action(Action::PathTrace(trace), at);
+        b.action(Action::ToneMap { exposure: Exposure::Ev(tables.2) }, at);
+        b.action(Action::WritePng { path: "a \"quoted\\\" \u{1} path.png".to_owned() }, at);
+        b.finish(last)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_is_printed_reads_back_and_prints_the_same(ir in any_ir()) {
+        let text = ir.to_string();
+        let back = read_with(&text, &|_| Some(tetrahedron())).map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
+        prop_assert_eq!(&back, &ir);
+        prop_assert_eq!(back.to_string(), text);
+    }
+
+    #[test]
+    fn garbage_is_an_error_and_no_panic(prefix in 0..400usize, garbage in "[ -~é\n]{0,30}") {
+        let text = "ir 1\nbsdf b0 = lambert(reflectance: tabulated(lambda_nm: [1.0], values: [2.0]))\n\
+                    material m0 = material(bsdf: b0)\n%0 = sphere(radius: 1.0, at: [1.0, 2.0, 3.0]) @0:1..2\n\
+                    %1 = mesh(path: \"a\\u{e9}\") @0:1..2\n%2 = with(%0, cut: b0) @0:2..3\nroot %2\n";
+        let mut end = prefix.min(text.len());
+        while !text.is_char_boundary(end) { end -= 1; }
+        let damaged = format!("{}{garbage}{}", &text[..end], &text[end..]);
+        if let Ok(ir) = read_with(&damaged, &|_| Some(tetrahedron())) {
+            let _ = verify(&ir);
+        }
+    }
+}
+
+#[test]
+fn errors_name_the_place() {
+    let cases = [
+        ("", "1:1: expected `ir`"),
+        ("ir 1\n%0 = sphere() @0:1..2\nroot %0", "2:6: `sphere` lacks `radius`"),
+        ("ir 1\n%0 = union(%0) @0:1..2\nroot %0", "2:12: not defined before its use"),
+        ("ir 1\n%1 = union() @0:1..2\nroot %1", "2:1: expected the next node, `%0`"),
+        ("ir 1\n%0 = union() @0:1..2\n", "3:1: there is no `root`"),
+        ("ir 1\n%0 = plane(at: [1, 2]) @0:1..2", "2:16: expected 3 numbers"),
+        ("ir 1\n%0 = mesh(path: \"a.ply\") @0:1..2", "2:6: there is no mesh `a.ply`"),
+        ("ir 1\n%0 = plane(size: 2) @0:1..2", "2:18: `plane` takes no such argument"),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(read(text).expect_err(text).to_string(), expected);
+    }
+}
+
+#[test]
+fn deep_nesting_is_an_error() {
+    let text = format!("ir 1\nbsdf b0 = mirror(reflectance: {}", "scaled(2.0, ".repeat(100_000));
+    assert!(read(&text).expect_err("too deep").message.contains("nested"));
+}
