@@ -12,7 +12,7 @@ const MOST_CORNERS: usize = 1024;
 /// What is wrong with a mesh file.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshError {
-    #[error("its name ends neither in .ply nor .obj nor .stl")]
+    #[error("its name ends neither in .ply nor .obj nor .stl nor .png")]
     Format,
     #[error("it cannot be read")]
     Read(#[source] std::io::Error),
@@ -22,6 +22,10 @@ pub enum MeshError {
     Obj(&'static str),
     #[error("it is no STL file: {0}")]
     Stl(std::io::Error),
+    #[error("it is no PNG file: {0}")]
+    Png(png::DecodingError),
+    #[error("it makes no height field: {0}")]
+    Image(&'static str),
     #[error("the file ends in `{element}` {index} of {count}")]
     Truncated { element: String, index: u64, count: u64 },
     #[error("the header declares no {0}")]

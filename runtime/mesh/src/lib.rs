@@ -1,6 +1,6 @@
 //! Readers of triangle meshes: bytes in, a checked [`TriangleMesh`] out.
 //!
-//! PLY (ASCII and both binary encodings, header and text by ply-rs), OBJ (tobj), STL (stl_io). Polygons are cut into
+//! PLY (ASCII and both binary encodings, header and text by ply-rs), OBJ (tobj), STL (stl_io), and grey PNG images as height fields. Polygons are cut into
 //! triangles; positions, normals and texture coordinates become f32. Nothing is repaired but normals and texture coordinates
 //! that are not usable, which are dropped: topology is [`arsc_geometry::ClosedMesh`]'s.
 //!
@@ -9,6 +9,7 @@
 
 mod binary;
 mod builder;
+mod height_field;
 mod obj;
 mod ply;
 mod stl;
@@ -25,6 +26,8 @@ pub enum Format {
     Ply,
     Obj,
     Stl,
+    /// A grey image as a height field.
+    Png,
 }
 
 impl Format {
@@ -35,6 +38,7 @@ impl Format {
             "ply" => Some(Format::Ply),
             "obj" => Some(Format::Obj),
             "stl" => Some(Format::Stl),
+            "png" => Some(Format::Png),
             _ => None,
         }
     }
@@ -46,5 +50,6 @@ pub fn read(name: &str, source: &mut dyn BufRead, bytes: u64) -> Result<Triangle
         Format::Ply => ply::read(source, bytes),
         Format::Obj => obj::read(source),
         Format::Stl => stl::read(source, bytes),
+        Format::Png => height_field::read(source, bytes),
     }
 }

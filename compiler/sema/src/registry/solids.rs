@@ -25,7 +25,6 @@ pub fn builtins() -> Vec<Builtin> {
     list.extend(flat());
     list.extend(files());
     list.extend(super::outlines::builtins());
-    list.extend(not_yet());
     list
 }
 
@@ -245,14 +244,21 @@ fn files() -> Vec<Builtin> {
             let shape = m.closed_mesh(args[0].as_str(), site)?;
             m.solid(shape, DAffine3::IDENTITY, site)
         }),
-    ]
-}
-
-fn not_yet() -> Vec<Builtin> {
-    vec![
-        solid("height_field", "A solid between z = 0 and a height given by an image.")
-            .param(Param::new("path", Str, "image file, relative to the script"))
-            .param(Param::new("size", Vec3, "extent").vec3([1.0; 3]).positive())
-            .later(Solid, "the height field"),
+        solid(
+            "height_field",
+            "A solid whose top is given by a grey image: black is at z = 0, white at `size`.z, its lower left corner at \
+             the origin. It goes down to z = -`size`.z / 16, so that black parts have a thickness. Its faces are triangles.",
+        )
+        .param(Param::new("path", Str, "PNG image, relative to the script; one vertex a pixel"))
+        .param(Param::new("size", Vec3, "extent along x and y, and height of white").vec3([1.0; 3]).positive())
+        .runs(Solid, |m, args, site| {
+            let path = args[0].as_str();
+            if !path.to_ascii_lowercase().ends_with(".png") {
+                let message = "a height field comes from a PNG image";
+                return Err(site.fail_arg(0, codes::ASSET, message, "has another extension"));
+            }
+            let shape = m.closed_mesh(path, site)?;
+            m.solid(shape, DAffine3::from_scale(args[1].as_vec3()), site)
+        }),
     ]
 }
