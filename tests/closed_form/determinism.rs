@@ -3,8 +3,8 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use arsc_render::{
-    Bands, Bsdf, Camera, Environment, Film, FilterShape, Material, PathTraceSettings, Progress, ReconstructionFilter,
-    World, path_trace,
+    Bsdf, Camera, Environment, Film, FilterShape, Material, PathTraceSettings, Progress, ReconstructionFilter, World,
+    path_trace,
 };
 use arsc_spectral::Spectrum;
 use glam::DVec3;
