@@ -46,7 +46,7 @@ impl Machine<'_> {
 
     fn lint_degenerate(&mut self, faces: usize, site: &Site) {
         if faces > 0 {
-            let message = format!("{} of the mesh have no area", count(faces, "face"));
+            let message = format!("faces of the mesh without an area: {faces}");
             self.lint(
                 Diagnostic::new(codes::DEGENERATE_FACES, message)
                     .label(site.args[0], "in this file")
@@ -57,7 +57,7 @@ impl Machine<'_> {
 
     fn lint_orientation(&mut self, repairs: &MeshRepairs, site: &Site) {
         if repairs.flipped > 0 {
-            let message = format!("{} of the mesh run against their neighbours", count(repairs.flipped, "face"));
+            let message = format!("faces of the mesh that run against their neighbours: {}", repairs.flipped);
             self.lint(
                 Diagnostic::new(codes::MESH_ORIENTATION, message)
                     .label(site.args[0], "they were turned to agree")
@@ -87,8 +87,4 @@ fn does_not_close(path: &str, error: &ClosedMeshError, site: &Site) -> Box<Diagn
         *site.fail_arg(0, codes::OPEN_MESH, format!("the mesh `{}` {message}", shortened(path)), error.to_string());
     diagnostic = diagnostic.help(help);
     Box::new(diagnostic)
-}
-
-fn count(n: usize, what: &str) -> String {
-    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
