@@ -97,9 +97,10 @@ fn point(ray: &Ray, t: f64) -> [dd::Dd; 3] {
 }
 
 fn gaps(body: &Body, ray: &Ray, places: &[f64]) -> Vec<Gap> {
-    let near = NEAR * body.tolerance_for(ray);
     let gap = |ends: &[f64]| {
         let (from, to) = (ends[0], ends[1]);
+        // Unbounded solids are crossed at any distance.
+        let near = NEAR * (body.tolerance_for(ray) + 8.0 * f64::EPSILON * to);
         let middle = from + 0.5 * (to - from);
         let (p, plain) = (point(ray, middle), ray.at(middle));
         let leaves: Vec<Answer> = body.leaves.iter().map(|leaf| leaf.answer(&p, plain, near)).collect();

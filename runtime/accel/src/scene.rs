@@ -525,11 +525,15 @@ impl Plan {
 }
 
 impl Member {
-    /// The ray's origin is in the solid.
+    /// The ray's origin is in the solid. The direction stays what it is: a grazing line would not survive a rounding.
     fn contains_start(&self, ray: &Ray) -> bool {
-        let map = self.frame.as_ref().map(|frame| frame.object_from_world);
-        let local = map.map_or(*ray, |map| ray.transformed(&map));
-        let near = self.model.near_ray(local.origin, local.dir.normalize(), f64::INFINITY);
+        let near = match &self.frame {
+            None => self.model.near_ray(ray.origin, ray.dir, f64::INFINITY),
+            Some(frame) => {
+                let local = ray.transformed(&frame.object_from_world);
+                self.model.near_ray(local.origin, local.dir.normalize(), f64::INFINITY)
+            }
+        };
         oracle::transitions(&self.model, &near, |_| false)
     }
 

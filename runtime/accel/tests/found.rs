@@ -73,3 +73,48 @@ fn half_spaces_far_away() {
         }
     }
 }
+
+/// A ray that starts in an unbounded solid and never leaves it is inside all along.
+#[test]
+fn inside_for_ever() {
+    let map = DAffine3 {
+        matrix3: DMat3::from_cols(
+            DVec3::new(0.3418059967816367, 0.9397705338010233, 6.605642949786272e-5),
+            DVec3::new(0.612328485123819, -0.22265801080093062, -0.758602159588372),
+            DVec3::new(-0.7128972484657807, 0.25933521555221273, -0.6515541106496117),
+        ),
+        translation: DVec3::new(-1.3913457444189308, -1.3134143375210943, 1.0914768078788208),
+    };
+    let size = DVec3::new(0.8259693355632445, 0.832390837409313, 0.8291487610629666);
+    let block = Shape::Box { min: -size, max: DVec3::new(size.y, size.z, size.x) };
+    let tilted = DAffine3 {
+        matrix3: DMat3::from_cols(
+            DVec3::new(0.9484732902050892, 0.6272305027660933, -0.3554951977035645),
+            DVec3::new(0.28284340559147797, -0.8664438928536514, -0.5884222827569531),
+            DVec3::new(-0.5571337592364569, -0.12592409196180077, -0.580846263278675),
+        ),
+        translation: DVec3::new(0.9712334810926513, 0.7034538621050155, -0.19996545227295548),
+    };
+    let ring = Shape::Torus { major: 1.1604120955806083, minor: 0.1971814662899468 };
+    let turned = DAffine3 {
+        matrix3: DMat3::from_cols(
+            DVec3::new(-0.0012199542906966565, -0.22587250584773486, 1.3251126470466033),
+            DVec3::new(-0.06538303220486738, 0.6611571186417338, 0.4506730230586776),
+            DVec3::new(0.997859494523766, 0.043045041194371705, 0.031149621575496323),
+        ),
+        translation: DVec3::new(1.4782361077914397, 1.3594352981839988, 0.2934826572568634),
+    };
+    let inner = Csg::Difference(Box::new(Csg::Leaf(0)), Box::new(Csg::Leaf(1)));
+    let tree = Csg::Difference(Box::new(inner), Box::new(Csg::Leaf(2)));
+    let solid = Solid { tree, leaves: vec![leaf(Shape::HalfSpace, map), leaf(block, tilted), leaf(ring, turned)] };
+    let ray = Ray::new(
+        DVec3::new(1.4441153435836334, 1.9960399513429192, 1.6957201029377251),
+        DVec3::new(-0.6448466908975908, -0.2749406722703825, 0.713148211783453),
+    );
+    assert!(ray.dir.is_normalized());
+    for (strategy, scene) in scenes(vec![solid]) {
+        let found = scene.intervals(&ray);
+        let ends: Vec<_> = found.iter().map(|i| (i.t_enter, i.t_exit, i.enter.is_some())).collect();
+        assert_eq!(ends, [(0.0, f64::INFINITY, false)], "{strategy:?}");
+    }
+}
