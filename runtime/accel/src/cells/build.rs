@@ -34,15 +34,15 @@ struct Work {
     depth: u32,
 }
 
-/// Adds the cells of a solid, but for the surfaces of its mesh leaves, which are those of [`crate::facets`]. Solids whose box is infinite are cut within the hull of their bounded leaves; what is
-/// beyond it is [`append_outer`]'s.
-pub fn append_solid(set: &mut CellSet, number: u32, solid: &SolidModel, budget: &Budget) {
+/// Adds the cells of a solid, but if `has_facets` for the surfaces of its mesh leaves, which are those of [`crate::facets`].
+/// Solids whose box is infinite are cut within the hull of their bounded leaves; what is beyond it is [`append_outer`]'s.
+pub fn append_solid(set: &mut CellSet, number: u32, solid: &SolidModel, has_facets: bool, budget: &Budget) {
     let Expression::Tokens(tokens) = &solid.expression else { return };
     let region = core(solid);
     if region.is_empty() {
         return;
     }
-    let mut builder = Builder::new(set, number, solid, budget);
+    let mut builder = Builder::new(set, number, solid, has_facets, budget);
     builder.run(Work { region, tokens: tokens.clone(), gainless: 0, depth: 0 });
 }
 
@@ -108,6 +108,7 @@ pub fn leaves_of(tokens: &[Token]) -> Vec<u32> {
 
 struct Builder<'a> {
     set: &'a mut CellSet,
+    has_facets: bool,
     number: u32,
     first_kernel: u32,
     solid: &'a SolidModel,
@@ -121,10 +122,11 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(set: &'a mut CellSet, number: u32, solid: &'a SolidModel, budget: &Budget) -> Builder<'a> {
+    fn new(set: &'a mut CellSet, number: u32, solid: &'a SolidModel, has_facets: bool, budget: &Budget) -> Builder<'a> {
         let first_kernel = set.push_kernels(&solid.leaves);
         Builder {
             set,
+            has_facets,
             number,
             first_kernel,
             solid,
@@ -202,7 +204,7 @@ impl<'a> Builder<'a> {
 
     /// The leaf's surface has cells and facets of its own.
     fn is_covered(&self, leaf: u32) -> bool {
-        mesh_of(&self.solid.leaves[leaf as usize]).is_some()
+        self.has_facets && mesh_of(&self.solid.leaves[leaf as usize]).is_some()
     }
 
     /// With the current states put in; `None` when constant.

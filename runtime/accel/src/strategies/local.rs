@@ -19,6 +19,9 @@ enum Open {
     Outer { cell: u32, core: Aabb },
 }
 
+/// Solids smaller than this, in parts of the largest coordinate, have no native triangles.
+const SMALLEST_MESH: f64 = 1.0 / 256.0;
+
 #[derive(Default)]
 pub struct Local {
     cells: CellSet,
@@ -34,13 +37,19 @@ pub struct Local {
 impl Local {
     pub fn build(solids: &Solids, budget: &Budget) -> Local {
         let mut local = Local::default();
+        let largest = |b: Aabb| if b.is_finite() { b.min.abs().max(b.max.abs()).max_element() } else { 0.0 };
+        let reach = solids.models.iter().map(|solid| largest(cells::core(solid))).fold(0.0, f64::max);
         for ((number, solid), share) in solids.numbered().zip(solids.shares(budget)) {
             let core = cells::core(solid);
             if !core.is_empty() && !Extent::admits(&core) {
                 local.open.push(Open::Whole { solid: number });
             } else if solid.leaves.iter().any(|leaf| mesh_of(leaf).is_some()) || !local.members.admit(number, solid) {
-                facets::append(&mut local.facets, &mut local.facet_cells, number, solid, &share);
-                cells::append_solid(&mut local.cells, number, solid, &share);
+                // Triangles that are small beside single precision's step in this scene are left to the cells.
+                let has_facets = !core.is_empty() && core.extent().max_element() >= SMALLEST_MESH * reach;
+                if has_facets {
+                    facets::append(&mut local.facets, &mut local.facet_cells, number, solid, &share);
+                }
+                cells::append_solid(&mut local.cells, number, solid, has_facets, &share);
                 if let Some((cell, core)) = cells::append_outer(&mut local.outer, number, solid) {
                     local.open.push(Open::Outer { cell, core });
                 }
