@@ -202,6 +202,11 @@ fn check_outline(segments: &[Segment], closed: bool) -> Result<(), ProfileError>
                 owners.push(i);
             }
         }
+        if !closed && i + 2 == segments.len() && ring.last() != Some(&segment.c[3]) {
+            // From here the outline goes along the axis.
+            ring.push(segment.c[3]);
+            owners.push(i);
+        }
     }
     if !closed && ring.first() == ring.last() {
         ring.pop();
