@@ -1,10 +1,11 @@
 //! Emission seen directly.
 
-use arsc_render::{Bands, Bsdf, Environment, Material, PathTraceSettings, path_trace};
+use arsc_render::bsdf::{MicrofacetShape, Microfacets};
+use arsc_render::{AreaEmitter, Bands, Bsdf, Environment, Material, PathTraceSettings, path_trace};
 use arsc_spectral::{Observer, Spectrum, WavelengthRange, planck};
 use glam::DVec3;
 
-use super::support::{Stage, band_means, camera, constant, emitter, render};
+use super::support::{Stage, band_means, camera, constant, emitter, render, stokes};
 
 /// Mean of Planck's law over a band.
 fn band_planck(edges: &[f64], kelvin: f64) -> f64 {
@@ -84,5 +85,26 @@ fn any_range_of_wavelengths_is_rendered_without_bias() {
         let mean = means.iter().sum::<f64>() / means.len() as f64;
         assert!((mean - 1.0).abs() < 0.02, "{min} to {max} nm: {mean}");
         assert!(means.iter().all(|band| (band - 1.0).abs() < 0.06), "{min} to {max} nm: {means:?}");
+    }
+}
+
+/// Kirchhoff's law: what glows vanishes in surroundings of its own temperature, and looks unpolarised, though both what it
+/// emits and what it reflects are polarised. Metal, smooth and rough (whose table is good to 3e-3), and paint.
+#[test]
+fn what_glows_vanishes_in_equilibrium() {
+    let facets = Microfacets::new(MicrofacetShape::Ggx, [0.3; 2]);
+    for (bsdf, bound) in [
+        (Bsdf::conductor(&constant(2.0), &constant(3.0)), 1e-5),
+        (Bsdf::rough_conductor(&constant(2.0), &constant(3.0), facets), 3e-3),
+        (Bsdf::lambert(&constant(0.6)), 1e-3),
+    ] {
+        let mut stage = Stage::default();
+        stage.environments.push(Environment::constant(&constant(1.0)));
+        let emitter = Some(AreaEmitter::thermal(&constant(1.0), false, &bsdf));
+        stage.sphere(DVec3::ZERO, 1.0, Material { bsdf, emitter, ..Material::default() });
+        let camera = camera(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO, 0.45, 32);
+        let [s0, s1, s2, s3] = stokes(&stage.build(), &camera, 64, 50);
+        assert!((s0 - 1.0).abs() < bound, "{s0}");
+        assert!([s1, s2, s3].iter().all(|s| s.abs() < bound), "{s1}, {s2}, {s3}");
     }
 }

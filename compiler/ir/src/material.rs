@@ -94,13 +94,15 @@ pub enum Bsdf {
     },
 }
 
-/// Emission of a surface towards the side of its normal (solids: outwards), Lambertian.
+/// Emission of a surface towards the side of its normal (solids: outwards).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emitter {
     /// W m^-2 sr^-1 nm^-1.
     pub radiance: Spectrum,
     /// Surfaces only: both sides emit.
     pub two_sided: bool,
+    /// Radiance times the absorptance of the bsdf, which depends on direction (Kirchhoff); otherwise Lambertian.
+    pub thermal: bool,
 }
 
 /// How the wall that a subtraction leaves is covered.

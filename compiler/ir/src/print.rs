@@ -164,8 +164,9 @@ fn facets_of<'a, 'b>(call: Call<'a, 'b>, facets: &Facets) -> Result<Call<'a, 'b>
 
 impl Display for Text<'_, Emitter> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Emitter { radiance, two_sided } = self.0;
-        Call::new(f, "emitter")?.arg("radiance", Text(radiance))?.arg("two_sided", two_sided)?.end()
+        let Emitter { radiance, two_sided, thermal } = self.0;
+        let name = if *thermal { "thermal_emitter" } else { "emitter" };
+        Call::new(f, name)?.arg("radiance", Text(radiance))?.arg("two_sided", two_sided)?.end()
     }
 }
 

@@ -234,10 +234,13 @@ fn facets(args: &mut Args) -> Result<Facets, Fault> {
 
 fn emitter(term: Term) -> Result<Emitter, Fault> {
     let mut args = Args::new(term)?;
-    if args.name != "emitter" {
-        return args.unknown("emitter");
-    }
-    let emitter = Emitter { radiance: spectrum(args.take("radiance")?)?, two_sided: args.boolean("two_sided")? };
+    let thermal = match args.name {
+        "emitter" => false,
+        "thermal_emitter" => true,
+        _ => return args.unknown("emitter"),
+    };
+    let emitter =
+        Emitter { radiance: spectrum(args.take("radiance")?)?, two_sided: args.boolean("two_sided")?, thermal };
     args.end()?;
     Ok(emitter)
 }

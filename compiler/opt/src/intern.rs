@@ -134,6 +134,7 @@ impl Structural for Emitter {
     fn structural_hash(&self, hasher: &mut FxHasher) {
         self.radiance.structural_hash(hasher);
         self.two_sided.hash(hasher);
+        self.thermal.hash(hasher);
     }
 }
 

@@ -17,7 +17,11 @@ pub fn lower(ir: &Ir) -> Result<Vec<Material>, AssemblyError> {
         let emitter = match material.emitter {
             Some(index) => {
                 let emitter = entry(&ir.emitters, index)?;
-                Some(AreaEmitter::new(&emitter.radiance, emitter.two_sided))
+                Some(if emitter.thermal {
+                    AreaEmitter::thermal(&emitter.radiance, emitter.two_sided, &bsdf)
+                } else {
+                    AreaEmitter::new(&emitter.radiance, emitter.two_sided)
+                })
             }
             None => None,
         };

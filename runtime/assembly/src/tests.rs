@@ -192,7 +192,7 @@ fn a_render_without_a_sample_writes_nothing() {
 fn lights_and_bounds_are_told() {
     let mut b = Builder::new();
     let lamp = b.surface(Surface::Rectangle { width: 2.0, depth: 3.0 }, DAffine3::IDENTITY, NOWHERE);
-    let emitter = Some(b.emitter(Emitter { radiance: Spectrum::Constant(1.0), two_sided: false }));
+    let emitter = Some(b.emitter(Emitter { radiance: Spectrum::Constant(1.0), two_sided: false, thermal: false }));
     let lamp = b.attributes(Attributes { emitter, ..Attributes::default() }, Precedence::Inner, lamp, NOWHERE);
     let ball = b.solid(Shape::Sphere { radius: 2.0 }, DAffine3::from_translation(DVec3::Z * 5.0), NOWHERE);
     let ir = scene(b, vec![ball, lamp], vec![Action::BoundingBoxes, Action::CollectLights]);
@@ -223,7 +223,7 @@ fn a_lamp_goes_behind_the_ceiling_in_whose_plane_it_lies() {
     let mut b = Builder::new();
     let ceiling = b.surface(Surface::Rectangle { width: 9.0, depth: 9.0 }, DAffine3::IDENTITY, NOWHERE);
     let lamp = b.surface(Surface::Rectangle { width: 2.0, depth: 3.0 }, DAffine3::IDENTITY, NOWHERE);
-    let emitter = Some(b.emitter(Emitter { radiance: Spectrum::Constant(1.0), two_sided: false }));
+    let emitter = Some(b.emitter(Emitter { radiance: Spectrum::Constant(1.0), two_sided: false, thermal: false }));
     let lamp = b.attributes(Attributes { emitter, ..Attributes::default() }, Precedence::Inner, lamp, NOWHERE);
     let ir = scene(b, vec![lamp, ceiling], vec![]);
     let surfaces = crate::geometry::lower(&ir).unwrap().surfaces;

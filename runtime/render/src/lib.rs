@@ -5,6 +5,7 @@
 //! Transport is generic over [`polarisation::Polarisation`], and compiled for light with and without.
 //! Radiometry: radiance in W m^-2 sr^-1 nm^-1, one scene unit is one metre (docs/radiometry.md).
 
+mod absorptance;
 pub mod bsdf;
 mod camera;
 #[cfg(test)]

@@ -155,7 +155,7 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
         b.bsdf(Bsdf::Polariser { transmittance: tables.0.clone(), angle: tables.2 });
         b.bsdf(Bsdf::Retarder { retardance: tables.2, angle: -0.5 });
         b.bsdf(Bsdf::Depolariser { transmittance: tables.0.clone() });
-        b.emitter(Emitter { radiance: tables.1, two_sided: numbers[0] % 2 == 0 });
+        b.emitter(Emitter { radiance: tables.1, two_sided: numbers[0] % 2 == 0, thermal: numbers[1] % 2 == 0 });
         for (i, recipe) in recipes.into_iter().enumerate() {
             let origin = Span { source: SourceId(i as u32), start: numbers[1] / 2, end: u32::MAX };
             let id = |of: usize| NodeId((of % i.max(1)) as u32);

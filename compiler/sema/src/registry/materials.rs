@@ -8,7 +8,7 @@ use crate::code::Site;
 use crate::eval::{Eval, Machine};
 use crate::types::Class;
 use crate::types::SpectrumKind::{Emission, Extinction, Reflectance, RefractiveIndex};
-use crate::types::Type::{self, Angle, Bool, Solid, Spectrum, Var};
+use crate::types::Type::{self, Angle, Bool, Float, Solid, Spectrum, Var};
 use crate::value::Value;
 
 pub(super) const MATERIAL: &str = "std.material";
@@ -66,7 +66,15 @@ fn attaching() -> Vec<Builtin> {
             .runs(Type::Emitter, |m, args, site| {
                 m.lint_emission(&args[0], site, 0);
                 let radiance = args[0].as_spectrum().as_ref().clone();
-                let id = m.emitter(Emitter { radiance, two_sided: args[1].as_bool() });
+                let id = m.emitter(Emitter { radiance, two_sided: args[1].as_bool(), thermal: false });
+                Ok(Value::Attributes(Attributes { emitter: Some(id), ..Attributes::default() }))
+            }),
+        Builtin::new("glow", "Thermal emission: Planck's law times what the surface's own bsdf absorbs, by direction.")
+            .param(Param::new("temperature", Float, "kelvin").positive())
+            .param(Param::new("two_sided", Bool, "open surfaces only: both sides emit").bool(false))
+            .runs(Type::Emitter, |m, args, _| {
+                let radiance = arsc_ir::Spectrum::Blackbody { kelvin: args[0].as_float() };
+                let id = m.emitter(Emitter { radiance, two_sided: args[1].as_bool(), thermal: true });
                 Ok(Value::Attributes(Attributes { emitter: Some(id), ..Attributes::default() }))
             }),
     ]

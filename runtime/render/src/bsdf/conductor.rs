@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::{BsdfSample, index_of_metal};
 use crate::fresnel;
-use crate::polarisation::Polarisation;
+use crate::polarisation::{DiattenuatingRetarder, Polarisation};
 
 #[derive(Clone, Debug)]
 pub struct Conductor {
@@ -19,10 +19,15 @@ impl Conductor {
         Conductor { eta, k }
     }
 
+    /// What a reflection at an angle of this cosine does.
+    #[inline]
+    pub fn reflection(&self, cos: f64, wavelengths: &SampledWavelengths) -> DiattenuatingRetarder {
+        let cos = cos.abs().min(1.0) as f32;
+        fresnel::conductor_reflection(cos, self.eta.sample(wavelengths), self.k.sample(wavelengths))
+    }
+
     #[inline]
     pub(super) fn sample<P: Polarisation>(&self, wo: DVec3, wavelengths: &SampledWavelengths) -> Option<BsdfSample<P>> {
-        let cos = wo.z.abs().min(1.0) as f32;
-        let effect = fresnel::conductor_reflection(cos, self.eta.sample(wavelengths), self.k.sample(wavelengths));
-        (wo.z != 0.0).then(|| BsdfSample::specular_reflection(wo, &effect))
+        (wo.z != 0.0).then(|| BsdfSample::specular_reflection(wo, &self.reflection(wo.z, wavelengths)))
     }
 }

@@ -35,8 +35,8 @@ pub trait Stokes: Copy + AddAssign + Mul<f32, Output = Self> {
     /// Light without any polarisation; fits every reference frame.
     fn unpolarised(radiance: SampledSpectrum) -> Self;
 
-    /// Linearly polarised light: the share `s1` of `radiance` (-1 to 1) along `axis`, a vector across `k`, over that
-    /// at right angles. The axis must be a unit vector.
+    /// Linearly polarised light that travels along `k`: `s1` is the radiance along `axis`, a unit vector across `k`, less
+    /// that at right angles.
     fn linear(radiance: SampledSpectrum, s1: SampledSpectrum, axis: DVec3, k: DVec3) -> Self;
 
     /// The first Stokes parameter.

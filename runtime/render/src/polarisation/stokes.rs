@@ -96,7 +96,7 @@ impl Stokes for StokesSpectrum {
     #[inline]
     fn linear(radiance: SampledSpectrum, s1: SampledSpectrum, axis: DVec3, k: DVec3) -> StokesSpectrum {
         let zero = SampledSpectrum::ZERO;
-        StokesSpectrum { s: [radiance, radiance * s1, zero, zero], frame: ReferenceFrame::new(axis, k) }
+        StokesSpectrum { s: [radiance, s1, zero, zero], frame: ReferenceFrame::new(axis, k) }
     }
 
     #[inline]
