@@ -204,7 +204,8 @@ pub struct Triangles {
     cumulative_area: OnceLock<Vec<f64>>,
 }
 
-/// What the triangles are made of. Meshes are shared with whoever read them, and mapped point by point: they may be large.
+/// What the triangles are made of. Few corners are kept in the world; meshes are shared with whoever read them, and mapped
+/// point by point: they may be large.
 #[derive(Clone, Debug)]
 enum Content {
     Triangle([DVec3; 3]),
@@ -214,14 +215,6 @@ enum Content {
 }
 
 impl Content {
-    fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        match self {
-            Content::Triangle(corners) => *corners,
-            Content::Quad(corners) => QUAD[triangle].map(|i| corners[i as usize]),
-            Content::Mesh(mesh) => mesh.corners(triangle),
-        }
-    }
-
     fn uvs(&self, triangle: usize) -> Option<[DVec2; 3]> {
         match self {
             Content::Triangle(_) => Some([DVec2::ZERO, DVec2::X, DVec2::Y]),
@@ -252,6 +245,11 @@ impl Triangles {
             return Err("a vertex is not finite");
         }
         let magnitude = if bounds.is_empty() { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
+        let content = match content {
+            Content::Triangle(corners) => Content::Triangle(corners.map(|p| map.transform_point3(p))),
+            Content::Quad(corners) => Content::Quad(corners.map(|p| map.transform_point3(p))),
+            mesh => mesh,
+        };
         Ok(SurfaceModel::Triangles(Triangles {
             content,
             map: *map,
@@ -275,14 +273,18 @@ impl Triangles {
     /// The four corners of a quad.
     pub fn quad(&self) -> Option<[DVec3; 4]> {
         match &self.content {
-            Content::Quad(corners) => Some(corners.map(|p| self.map.transform_point3(p))),
+            Content::Quad(corners) => Some(*corners),
             _ => None,
         }
     }
 
     #[inline]
     pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.content.corners(triangle).map(|p| self.map.transform_point3(p))
+        match &self.content {
+            Content::Triangle(corners) => *corners,
+            Content::Quad(corners) => QUAD[triangle].map(|i| corners[i as usize]),
+            Content::Mesh(mesh) => mesh.corners(triangle).map(|p| self.map.transform_point3(p)),
+        }
     }
 
     fn cross(&self, triangle: usize) -> DVec3 {

@@ -134,9 +134,8 @@ impl World {
         let base = exitance(self.geometry.parts()[part.0 as usize].material.0);
         let others: Vec<(u32, Option<f64>)> =
             self.geometry.face_materials(part).iter().map(|&(face, material)| (face, exitance(material.0))).collect();
-        let area = self.geometry.part_area(part);
         if others.is_empty() {
-            return base.map(|exitance| exitance * area);
+            return base.map(|exitance| exitance * self.geometry.part_area(part));
         }
         let on_face = |face: u32| others.iter().find(|other| other.0 == face).map_or(base, |other| other.1);
         let lit: Vec<(u32, f64)> =
@@ -146,7 +145,7 @@ impl World {
         }
         let mean = lit.iter().map(|(_, exitance)| exitance).sum::<f64>() / lit.len() as f64;
         let share = self.geometry.sample_only(part, lit.into_iter().map(|(face, _)| face).collect());
-        Some(mean * share * area)
+        Some(mean * share * self.geometry.part_area(part))
     }
 
     fn choose_probabilities(&mut self) {
