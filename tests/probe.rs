@@ -1,6 +1,9 @@
-//! `arsc probe` from outside: intervals against closed forms, both formats, bad rows.
+//! `arsc probe` from outside: intervals against closed forms, both formats, bad rows; every primitive against its
+//! inequality.
 
 mod common;
+#[path = "probe/primitives.rs"]
+mod primitives;
 
 use common::{arsc, arsc_with_input, scene, stderr, stdout};
 
