@@ -1,25 +1,29 @@
-//! Triangles of mesh operands as Embree's own.
+//! Triangles of mesh operands as primitives of Embree.
 //!
 //! Wherever all other leaves of a solid are constant near a triangle, the expression is the mesh or its complement there (or
 //! constant: then the triangle is not on the boundary and goes). A ray that meets such a triangle has met the solid: no
 //! parity is needed. The few triangles where something else comes near have a cell: what the expression is in their box. A
 //! ray that meets one of these asks the cell, which counts crossings as all cells do, about the place alone.
 //!
+//! Embree only culls, by padded boxes; whether a ray passes through a triangle is decided exactly, as by
+//! [`ClosedMesh::crossings`]. (Embree's own triangles, however grown, lose rays along them.) Near an edge the line may pass a
+//! neighbour within the tolerance, in and out again: there the crossings of the whole mesh are asked.
+//!
 //! Meshes are walked down their own hierarchies, so that most triangles are decided many at a time.
 
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use arsc_geometry::{Aabb, ClosedMesh, Placed, Projection, Shape};
+use arsc_geometry::{Aabb, ClosedMesh, Passage, Placed, Projection, Shape};
 use glam::DVec3;
 use smallvec::SmallVec;
 
 use crate::Budget;
-use crate::cells::{Cell, CellSet, Line, PAD, Window, essential, leaves_of, state};
+use crate::cells::{Cell, CellLeaf, CellSet, Line, PAD, Window, essential, leaf_transitions, leaves_of, state};
 use crate::expression::{Expression, Token, Word, substitute};
 use crate::level::Solids;
 use crate::query::{Mode, Query};
-use crate::solid::SolidModel;
+use crate::solid::{SolidModel, SolidRay};
 use crate::transition::Transition;
 
 /// A triangle of a mesh leaf, on the boundary of the solid in some place at least.
@@ -155,20 +159,21 @@ impl Facet {
         })
     }
 
-    /// Meets the facet: exactly where the crossings of the whole mesh have it.
+    /// Meets the facet, which Embree has come to by its padded box: exactly where the crossings of the whole mesh have it.
     #[inline]
     pub fn visit(&self, solids: &Solids, set: &CellSet, query: &mut Query) {
         if solids.is_left_out(self.solid, query) {
             return;
         }
         query.tests += 1;
-        let (ray, view) = (solids.near_ray(self.solid, query), query.view);
         let placed = &solids.models[self.solid as usize].leaves[self.leaf as usize];
         let Some(mesh) = mesh_of(placed) else { return };
+        let (ray, view) = (solids.near_ray(self.solid, query), query.view);
         let map = placed.object_from_world();
         let line = Projection::new(map.transform_point3(ray.origin), map.transform_vector3(ray.dir));
-        let Some((t, enters)) = mesh.crossing(&line, self.triangle) else { return };
+        let Some(Passage { t, enters, is_marginal }) = mesh.crossing(&line, self.triangle) else { return };
         let flipped = match self.part {
+            Part::Whole { flipped } if is_marginal => return self.visit_leaf(solids, t, flipped, query),
             Part::Whole { flipped } => flipped,
             Part::Cell(cell) => return self.visit_cell(solids, set, &set.cells[cell as usize], t, query),
         };
@@ -177,16 +182,36 @@ impl Facet {
         query.offer(solids.candidate(self.solid, transition, &ray, &view));
     }
 
+    /// The stretch in which the cluster of coincident crossings that one at `t` is in begins: at most a tolerance before.
+    fn window(&self, solids: &Solids, ray: &SolidRay, t: f64) -> Option<Window> {
+        let tolerance = solids.tolerance(self.solid);
+        let (low, high) = ((t - 1.5 * tolerance).max(ray.start), (t + 0.5 * tolerance).min(ray.end));
+        (low <= high).then_some(Window { low, high, start: ray.start, tolerance })
+    }
+
+    /// Asks the whole mesh about what happens at `t`: crossings within the tolerance cancel in pairs.
+    #[cold]
+    fn visit_leaf(&self, solids: &Solids, t: f64, flipped: bool, query: &mut Query) {
+        let (ray, view) = (solids.near_ray(self.solid, query), query.view);
+        let Some(window) = self.window(solids, &ray, t) else { return };
+        let model = &solids.models[self.solid as usize];
+        let leaf = CellLeaf::new(self.leaf, &model.leaves);
+        let line = Line::new(model, self.solid, &ray, &view);
+        let mut found: SmallVec<[Transition; 4]> = SmallVec::new();
+        let scratch = &mut query.scratch;
+        leaf_transitions(&leaf, flipped, &line, &window, scratch, |transition| {
+            found.push(transition);
+            true
+        });
+        for transition in found {
+            query.offer(solids.candidate(self.solid, transition, &ray, &view));
+        }
+    }
+
     /// Asks the cell about what happens at `t`.
     fn visit_cell(&self, solids: &Solids, set: &CellSet, cell: &Cell, t: f64, query: &mut Query) {
         let (ray, view) = (solids.near_ray(self.solid, query), query.view);
-        let tolerance = solids.tolerance(self.solid);
-        // The cluster of coincident crossings that this one is in begins at most a tolerance before.
-        let (low, high) = ((t - 1.5 * tolerance).max(ray.start), (t + 0.5 * tolerance).min(ray.end));
-        if low > high {
-            return;
-        }
-        let window = Window { low, high, start: ray.start, tolerance };
+        let Some(window) = self.window(solids, &ray, t) else { return };
         let line = Line::new(&solids.models[self.solid as usize], self.solid, &ray, &view);
         let all = query.mode == Mode::Collect;
         let mut found: SmallVec<[Transition; 4]> = SmallVec::new();

@@ -2,10 +2,7 @@
 
 use std::sync::Arc;
 
-use arsc_embree::{
-    Bounds, BuildQuality, Callbacks, Candidate as NativeCandidate, Device, GeometryId, Scene as EmbreeScene,
-    SceneBuilder, Step,
-};
+use arsc_embree::{Bounds, BuildQuality, Callbacks, Device, GeometryId, Scene as EmbreeScene, SceneBuilder, Step};
 use arsc_geometry::Aabb;
 
 use crate::facets::Facet;
@@ -117,7 +114,7 @@ impl Level {
         corners.fold(hull, |hull, p| hull.union(&Aabb::new(p, p)))
     }
 
-    /// Triangles that are boundary by themselves.
+    /// Triangles that are boundary by themselves, or in part.
     pub fn facets(&self) -> &[Facet] {
         match &self.tracer {
             Tracer::Local(local) => &local.facets,
@@ -125,17 +122,10 @@ impl Level {
         }
     }
 
-    /// Gives the facets to Embree, filtered, a little larger than they are.
-    pub fn add_facets<C: Callbacks>(&self, builder: &mut SceneBuilder<C>, extent: &Extent) -> Result<(), AccelError> {
-        let facets = self.facets();
-        if facets.is_empty() {
-            return Ok(());
-        }
-        let vertices: Vec<[f32; 3]> =
-            facets.iter().flat_map(|facet| extent.grown(facet.corners(&self.solids))).collect();
-        let triangles: Vec<[u32; 3]> = (0..facets.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        builder.triangles(&vertices, &triangles, true)?;
-        Ok(())
+    /// Holds the facet.
+    pub fn facet_bounds(&self, facet: u32) -> Aabb {
+        let corners = self.facets()[facet as usize].corners(&self.solids);
+        corners.iter().fold(Aabb::EMPTY, |hull, &p| hull.union(&Aabb::new(p, p)))
     }
 
     /// Meets a facet that Embree's traversal has come to.
@@ -231,6 +221,9 @@ fn pass<C: Callbacks<Query = Query>>(scene: &EmbreeScene<C>, extent: &Extent, qu
     }
 }
 
+/// The first geometry of a prototype; the second is its facets.
+const PRIMITIVES: GeometryId = GeometryId(0);
+
 /// A level as a scene of its own, for instances.
 pub struct Prototype {
     pub level: Level,
@@ -246,12 +239,20 @@ impl Prototype {
     ) -> Result<EmbreeScene<Prototype>, AccelError> {
         let level = Level::new(vec![solid], strategy, budget);
         let extent = Extent::new(level.bounds());
-        let primitives = level.primitive_count();
+        let (primitives, facets) = (level.primitive_count(), level.facets().len());
         let mut builder = SceneBuilder::new(device, Arc::new(Prototype { level, extent }), BuildQuality::High)?;
         builder.user_geometry(primitives)?;
-        let prototype = builder.callbacks();
-        prototype.level.add_facets(&mut builder, &prototype.extent)?;
+        if facets > 0 {
+            builder.user_geometry(facets)?;
+        }
         Ok(builder.commit()?)
+    }
+
+    fn visit(&self, query: &mut Query, geometry: GeometryId, primitive: u32) {
+        match geometry {
+            PRIMITIVES => self.level.visit(primitive, query),
+            _ => self.level.visit_facet(primitive, query),
+        }
     }
 
     /// Traces the query, whose view is this frame's.
@@ -268,29 +269,22 @@ impl Prototype {
 impl Callbacks for Prototype {
     type Query = Query;
 
-    fn bounds(&self, _: GeometryId, primitive: u32) -> Bounds {
-        self.extent.single(&self.level.primitive_bounds(primitive))
+    fn bounds(&self, geometry: GeometryId, primitive: u32) -> Bounds {
+        let bounds = match geometry {
+            PRIMITIVES => self.level.primitive_bounds(primitive),
+            _ => self.level.facet_bounds(primitive),
+        };
+        self.extent.single(&bounds)
     }
 
-    fn intersect(&self, query: &mut Query, _: GeometryId, primitive: u32, _: Option<GeometryId>) -> Step {
+    fn intersect(&self, query: &mut Query, geometry: GeometryId, primitive: u32, _: Option<GeometryId>) -> Step {
         let before = query.limit();
-        self.level.visit(primitive, query);
+        self.visit(query, geometry, primitive);
         query.step(before)
     }
 
-    fn occluded(&self, query: &mut Query, _: GeometryId, primitive: u32, _: Option<GeometryId>) -> bool {
-        self.level.visit(primitive, query);
-        query.ends()
-    }
-
-    fn filter(&self, query: &mut Query, candidate: NativeCandidate) -> Step {
-        let before = query.limit();
-        self.level.visit_facet(candidate.primitive, query);
-        query.step(before)
-    }
-
-    fn filter_occluded(&self, query: &mut Query, candidate: NativeCandidate) -> bool {
-        self.level.visit_facet(candidate.primitive, query);
+    fn occluded(&self, query: &mut Query, geometry: GeometryId, primitive: u32, _: Option<GeometryId>) -> bool {
+        self.visit(query, geometry, primitive);
         query.ends()
     }
 }

@@ -1,4 +1,4 @@
-//! All that rays meet, under one Embree scene: cells of solids, flat surfaces and instances as user geometry, triangles
+//! All that rays meet, under one Embree scene: cells and facets of solids, flat surfaces and instances as user geometry, other triangles
 //! and quads natively. Embree culls, double precision decides: triangles are given to Embree a little larger than they are,
 //! and a filter finds their hits again. What is not finite is a short list that every ray meets first.
 
@@ -227,6 +227,7 @@ impl World {
             (Kind::Solids, self.level.primitive_count()),
             (Kind::Flats, self.flats.len()),
             (Kind::Instances, self.placed.len()),
+            (Kind::Facets, self.level.facets().len()),
         ];
         let users = users.into_iter().filter(|&(_, count)| count > 0);
         let users: Vec<(Kind, usize)> = users.collect();
@@ -236,9 +237,6 @@ impl World {
         }
         if !native.quads.is_empty() {
             self.kinds.push(Kind::Quads);
-        }
-        if !self.level.facets().is_empty() {
-            self.kinds.push(Kind::Facets);
         }
         let kinds = self.kinds.clone();
         let quality = if native.triangles.len() > LARGE { BuildQuality::Medium } else { BuildQuality::High };
@@ -254,8 +252,6 @@ impl World {
         }
         // Embree has its own copy, and needs room for the build.
         drop(native);
-        let world = builder.callbacks();
-        world.level.add_facets(&mut builder, &world.extent)?;
         Ok(builder.commit()?)
     }
 
@@ -334,7 +330,8 @@ impl World {
                     self.visit_flat(surface, flat, query);
                 }
             }
-            Kind::Facets | Kind::Triangles | Kind::Quads => {}
+            Kind::Facets => self.level.visit_facet(primitive, query),
+            Kind::Triangles | Kind::Quads => {}
         }
     }
 
@@ -346,7 +343,6 @@ impl World {
                 let triangle = candidate.primitive - first;
                 (surface, triangle..triangle + 1)
             }
-            Kind::Facets => return self.level.visit_facet(candidate.primitive, query),
             _ => (self.quads[candidate.primitive as usize], 0..2),
         };
         if let SurfaceModel::Triangles(mesh) = &self.surfaces[surface as usize] {
@@ -364,6 +360,7 @@ impl Callbacks for World {
         let bounds = match self.kinds[geometry.0 as usize] {
             Kind::Solids => self.level.primitive_bounds(primitive),
             Kind::Instances => self.instances[self.placed[primitive as usize] as usize].bounds(),
+            Kind::Facets => self.level.facet_bounds(primitive),
             _ => self.surfaces[self.flats[primitive as usize] as usize].bounds(),
         };
         self.extent.single(&bounds)

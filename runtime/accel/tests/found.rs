@@ -1,6 +1,12 @@
 //! What `tests/truth.rs` has found, by hand: scenes and rays that a strategy once got wrong.
 
+#[path = "../../../tests/common/meshes.rs"]
+mod meshes;
+
+use std::sync::Arc;
+
 use arsc_accel::{BuildOptions, Csg, CsgLeaf, MaterialIndex, Ray, Scene, SceneGeometry, Shape, Solid, Strategy};
+use arsc_geometry::ClosedMesh;
 use glam::{DAffine3, DMat3, DVec3};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -116,5 +122,54 @@ fn inside_for_ever() {
         let found = scene.intervals(&ray);
         let ends: Vec<_> = found.iter().map(|i| (i.t_enter, i.t_exit, i.enter.is_some())).collect();
         assert_eq!(ends, [(0.0, f64::INFINITY, false)], "{strategy:?}");
+    }
+}
+
+fn closed(mesh: arsc_accel::TriangleMesh) -> Shape {
+    Shape::Mesh(Arc::new(ClosedMesh::new("found".into(), mesh).unwrap().0))
+}
+
+/// A line through the topmost vertex of a mesh, and through nothing else of it, meets nothing.
+#[test]
+fn a_vertex_touched() {
+    for scale in [1e5, 1.0, 1e-9] {
+        let map = DAffine3::from_scale(DVec3::splat(scale));
+        let solid = Solid { tree: Csg::Leaf(0), leaves: vec![leaf(closed(meshes::sphere(4, 7, 0.5)), map)] };
+        for (strategy, scene) in scenes(vec![solid]) {
+            for i in 0..200 {
+                let around = f64::from(i) * 0.1;
+                let dir = DVec3::new(around.cos(), around.sin(), 0.0);
+                let ray = Ray::new((DVec3::Z * 0.5 - dir * 2.0) * scale, dir);
+                assert_eq!(scene.intersect(&ray).map(|hit| hit.t), None, "{strategy:?} {ray:?}");
+                assert!(!scene.occluded(&ray) && scene.intervals(&ray).is_empty(), "{strategy:?} {ray:?}");
+            }
+        }
+    }
+}
+
+/// Between points of a lattice, along faces and through edges and corners of meshes, strategies agree.
+#[test]
+fn lines_along_faces_and_through_corners_of_meshes() {
+    let mut rng = Pcg64::seed_from_u64(2);
+    let block = closed(meshes::cube([-0.5, -1.0, 0.0], [0.5, 1.0, 1.0]));
+    let ball = closed(meshes::sphere(4, 7, 1.0));
+    let point = |rng: &mut Pcg64, reach: i32| {
+        DVec3::from_array(std::array::from_fn(|_| f64::from(rng.random_range(-reach..=reach)) * 0.5))
+    };
+    for tree in [Csg::Leaf(0), Csg::Leaf(1), Csg::Difference(Box::new(Csg::Leaf(1)), Box::new(Csg::Leaf(0)))] {
+        let map = DAffine3::from_scale(DVec3::splat(1e5));
+        let leaves = vec![leaf(block.clone(), map), leaf(ball.clone(), map)];
+        let built: Vec<_> = scenes(vec![Solid { tree, leaves }]).collect();
+        for _ in 0..4000 {
+            let (from, to) = (point(&mut rng, 6), point(&mut rng, 2));
+            let Some(dir) = (to - from).try_normalize() else { continue };
+            let ray = Ray::new(from * 1e5, dir);
+            let inside = |scene: &Scene| scene.intervals(&ray).iter().map(|i| i.t_exit - i.t_enter).sum::<f64>();
+            let nearest = |scene: &Scene| scene.intersect(&ray).map_or(-1.0, |hit| hit.t);
+            let all = built.iter().map(|(strategy, scene)| (strategy, inside(scene), nearest(scene)));
+            let all: Vec<_> = all.collect();
+            let agree = all.iter().all(|one| (one.1 - all[1].1).abs() < 1e-4 && (one.2 - all[1].2).abs() < 1e-4);
+            assert!(agree, "{ray:?} {all:?}");
+        }
     }
 }

@@ -42,7 +42,7 @@ mod triangle_mesh;
 pub use aabb::Aabb;
 pub use area::AreaPoint;
 pub use classify::Classification;
-pub use closed_mesh::{ClosedMesh, ClosedMeshError, MeshRepairs, Projection};
+pub use closed_mesh::{ClosedMesh, ClosedMeshError, MeshRepairs, Passage, Projection};
 pub use crossings::Crossings;
 pub use foot::Foot;
 pub use glam::{DAffine3, DMat3, DVec2, DVec3};

@@ -410,16 +410,18 @@ fn walk(
     }
 }
 
-/// Calls `visit` for every transition of a solid of one leaf in the window, in order, until it returns false.
+/// Calls `visit` for every transition of a solid of one leaf, or (`negated`) its complement, in the window, in order, until it
+/// returns false.
 #[inline]
 pub fn leaf_transitions(
     leaf: &CellLeaf,
+    negated: bool,
     line: &Line,
     window: &Window,
     scratch: &mut Scratch,
     visit: impl FnMut(Transition) -> bool,
 ) {
-    single(leaf, false, line, window, scratch, visit);
+    single(leaf, negated, line, window, scratch, visit);
 }
 
 /// One leaf, or (`negated`) its complement: its crossings are the transitions, pairs within the tolerance cancel.

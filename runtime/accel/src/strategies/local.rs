@@ -19,7 +19,7 @@ enum Open {
     Outer { cell: u32, core: Aabb },
 }
 
-/// Solids smaller than this, in parts of the largest coordinate, have no native triangles.
+/// Solids smaller than this, in parts of the largest coordinate, have no facets.
 const SMALLEST_MESH: f64 = 1.0 / 256.0;
 
 #[derive(Default)]
@@ -27,7 +27,7 @@ pub struct Local {
     cells: CellSet,
     /// Primitives after the cells.
     pub members: Members,
-    /// Native triangles, with their cells.
+    /// Triangles of mesh leaves, with their cells.
     pub facets: Vec<Facet>,
     pub facet_cells: CellSet,
     outer: CellSet,

@@ -125,7 +125,7 @@ impl Members {
         let (line, window) = whole(solids, member.solid, &ray, query);
         let mut found: SmallVec<[Transition; 4]> = SmallVec::new();
         let all = query.mode == Mode::Collect;
-        cells::leaf_transitions(&member.leaf, &line, &window, &mut query.scratch, |transition| {
+        cells::leaf_transitions(&member.leaf, false, &line, &window, &mut query.scratch, |transition| {
             found.push(transition);
             all
         });

@@ -22,7 +22,7 @@ use bvh::Bvh;
 
 use projection::crossing;
 
-pub use projection::Projection;
+pub use projection::{Passage, Projection};
 
 /// Direction of the rays that decide membership: about z, along no plane that meshes are made of.
 const PROBE: DVec3 = DVec3::new(0.132_719, 0.071_933, 1.0);
@@ -215,17 +215,17 @@ impl ClosedMesh {
         self.bvh.visit(
             |node| line.meets_box::<MAJOR>(node.min, node.max),
             |triangle| {
-                if let Some((t, _)) = self.crossing_along::<MAJOR>(line, triangle) {
-                    visit(t, triangle);
+                if let Some(passage) = self.crossing_along::<MAJOR>(line, triangle) {
+                    visit(passage.t, triangle);
                 }
                 true
             },
         );
     }
 
-    /// Where the line passes through a triangle, and whether it goes in there.
+    /// Where the line passes through a triangle.
     #[inline]
-    pub fn crossing(&self, line: &Projection, triangle: u32) -> Option<(f64, bool)> {
+    pub fn crossing(&self, line: &Projection, triangle: u32) -> Option<Passage> {
         match line.major() {
             0 => self.crossing_along::<0>(line, triangle),
             1 => self.crossing_along::<1>(line, triangle),
@@ -234,7 +234,7 @@ impl ClosedMesh {
     }
 
     #[inline]
-    fn crossing_along<const MAJOR: usize>(&self, line: &Projection, triangle: u32) -> Option<(f64, bool)> {
+    fn crossing_along<const MAJOR: usize>(&self, line: &Projection, triangle: u32) -> Option<Passage> {
         let corners = self.mesh.triangles[triangle as usize];
         let [a, b, c] = corners.map(|i| line.project::<MAJOR>(self.mesh.positions[i as usize]));
         crossing(line, a, b, c)

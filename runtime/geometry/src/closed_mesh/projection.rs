@@ -17,6 +17,9 @@ const PRODUCTS: f64 = 3.4e-16;
 /// A projected area below so many of its error bounds says nothing about where the line passes.
 const EDGE_ON: f64 = 1e6;
 
+/// Barycentric coordinate up to which a line passes near an edge.
+const MARGIN: f64 = 1.0 / (1 << 12) as f64;
+
 /// A line that points are projected along.
 #[derive(Clone, Copy, Debug)]
 pub struct Projection {
@@ -76,12 +79,22 @@ impl Projection {
     }
 }
 
-/// The parameter at which the line passes through the triangle, if it does, and whether it goes against the normal.
+/// Where a line passes through a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passage {
+    pub t: f64,
+    /// It goes against the normal.
+    pub enters: bool,
+    /// So near an edge ([`MARGIN`]), or so nearly along the triangle, that the line may pass a neighbour at the same place.
+    pub is_marginal: bool,
+}
+
+/// The passage of the line through the triangle, if there is one.
 ///
-/// Its error is some 2⁻⁵⁰ of the largest number involved over the cosine of the angle of incidence; it never leaves the
+/// The error of its parameter is some 2⁻⁵⁰ of the largest number involved over the cosine of the angle of incidence; it never leaves the
 /// stretch of the line along which the triangle lies.
 #[inline]
-pub fn crossing(line: &Projection, a: Projected, b: Projected, c: Projected) -> Option<(f64, bool)> {
+pub fn crossing(line: &Projection, a: Projected, b: Projected, c: Projected) -> Option<Passage> {
     let (u, v, w) = (product(b, c), product(c, a), product(a, b));
     let sign = side(b, c, u);
     if sign == 0 || side(c, a, v) != sign || side(a, b, w) != sign {
@@ -90,10 +103,12 @@ pub fn crossing(line: &Projection, a: Projected, b: Projected, c: Projected) -> 
     let enters = (sign > 0) != (line.inverse > 0.0);
     let area = u.0 + v.0 + w.0;
     if area.abs() <= EDGE_ON * (u.1 + v.1 + w.1) {
-        return Some((edge_on(a, b, c), enters));
+        return Some(Passage { t: edge_on(a, b, c), enters, is_marginal: true });
     }
     let t = (u.0 * a.t + v.0 * b.t + w.0 * c.t) / area;
-    Some((t.clamp(a.t.min(b.t).min(c.t), a.t.max(b.t).max(c.t)), enters))
+    let t = t.clamp(a.t.min(b.t).min(c.t), a.t.max(b.t).max(c.t));
+    let is_marginal = u.0.abs().min(v.0.abs()).min(w.0.abs()) <= MARGIN * area.abs();
+    Some(Passage { t, enters, is_marginal })
 }
 
 /// The same for a triangle that is hardly more than a line in the projection: the middle of the stretch between its edges,
