@@ -144,13 +144,9 @@ pub struct Material {
 impl Bsdf {
     /// Light passes through a closed wall of it, so that it matters what fills the solid.
     pub fn is_transmissive(&self) -> bool {
-        match self {
-            Bsdf::Dielectric { .. } | Bsdf::RoughDielectric { .. } | Bsdf::Inert => true,
-            Bsdf::ThinDielectric { .. } | Bsdf::Polariser { .. } | Bsdf::Retarder { .. } | Bsdf::Depolariser { .. } => {
-                true
-            }
-            _ => false,
-        }
+        let interface = matches!(self, Bsdf::Dielectric { .. } | Bsdf::RoughDielectric { .. } | Bsdf::Inert);
+        let element = matches!(self, Bsdf::Polariser { .. } | Bsdf::Retarder { .. } | Bsdf::Depolariser { .. });
+        interface || element || matches!(self, Bsdf::ThinDielectric { .. })
     }
 
     /// It is an interface between two indices of refraction.

@@ -408,7 +408,7 @@ mod tests {
                 continue;
             }
             let found = polygon.crossings(o, d);
-            assert!(found.len() % 2 == 0);
+            assert!(found.len().is_multiple_of(2));
             for pair in found.chunks(2).filter(|pair| (pair[1].0 - pair[0].0) * d.length() > 1e-9) {
                 assert!(polygon.contains(o + d * (0.5 * (pair[0].0 + pair[1].0))));
             }

@@ -245,7 +245,7 @@ fn coplanar_groups(points: &[DVec3], triangles: &[[u32; 3]], tolerance: f64) -> 
                 let Some(&other) = beside.get(&edge) else { continue };
                 let (t, o) = (&triangles[i], &triangles[other]);
                 // Slivers have no normal to speak of: it is enough that one lies in the plane of the other.
-                if !taken[other] && !(surpasses(t, o) && surpasses(o, t)) {
+                if !(taken[other] || surpasses(t, o) && surpasses(o, t)) {
                     taken[other] = true;
                     group.push(other);
                 }

@@ -42,7 +42,8 @@ impl Span {
     /// Nothing is between its ends, which may be no numbers.
     #[inline]
     pub fn is_empty(&self) -> bool {
-        !(self.t0 < self.t1)
+        let holds = self.t0 < self.t1;
+        !holds
     }
 
     /// The line in an upright box, whose faces are 0 −x, 1 +x, 2 −y, 3 +y, 4 −z, 5 +z; `inverse_dir` is `1 / dir`.

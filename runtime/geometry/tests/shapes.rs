@@ -79,7 +79,7 @@ fn star(points: u32, inner: f64) -> Shape {
     let corner = |i: u32| {
         // Turned, so that no line in a coordinate plane meets a concave corner, where a normal leads into the solid.
         let angle = 0.123 + f64::from(i) * TAU / f64::from(2 * points);
-        DVec2::from_angle(angle) * if i % 2 == 0 { 0.9 } else { inner }
+        DVec2::from_angle(angle) * if i.is_multiple_of(2) { 0.9 } else { inner }
     };
     let ring = (0..2 * points).map(corner).collect();
     Shape::Prism(Arc::new(Prism::new(Polygon::new(vec![ring]).unwrap(), 0.5).unwrap()))

@@ -149,7 +149,7 @@ impl Poly {
     pub fn not_positive(&self) -> LineSet {
         let poly = self.trimmed();
         let lead = sign(&poly.0[poly.0.len() - 1]);
-        let odd = poly.0.len() % 2 == 0;
+        let odd = poly.0.len().is_multiple_of(2);
         let before = match lead {
             Ordering::Equal => true,
             Ordering::Less => !odd,

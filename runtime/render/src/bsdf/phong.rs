@@ -59,7 +59,7 @@ impl Phong {
         let frame = Frame::new(DVec3::new(-wo.x, -wo.y, wo.z));
         let wi = frame.to_world(DVec3::new(r * cos, r * sin, log.exp())).normalize();
         let pdf = self.pdf(wo, wi);
-        if !(pdf > 0.0) {
+        if pdf.is_nan() || pdf <= 0.0 {
             return None;
         }
         let weight = self.eval(wo, wi, wavelengths) * (wi.z.abs() / pdf) as f32;

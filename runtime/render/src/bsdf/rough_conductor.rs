@@ -81,7 +81,7 @@ impl RoughConductor {
         h.z = h.z.copysign(wo.z);
         let wi = (h * (2.0 * wo.dot(h)) - wo).normalize();
         let pdf = self.pdf(wo, wi);
-        if !(pdf > 0.0) {
+        if pdf.is_nan() || pdf <= 0.0 {
             return None;
         }
         let weight = self.eval::<P>(wo, wi, wavelengths) * (wi.z.abs() / pdf) as f32;

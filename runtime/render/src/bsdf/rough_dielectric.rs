@@ -158,7 +158,7 @@ impl RoughDielectric {
         }
         let facets = self.facets_of(wo, wi, ior);
         let pdf = facets[0]?.pdf;
-        if !(pdf > 0.0) {
+        if pdf.is_nan() || pdf <= 0.0 {
             return None;
         }
         let ratio = |lane: usize| facets[lane].map_or(0.0, |facet| (facet.pdf / pdf) as f32);

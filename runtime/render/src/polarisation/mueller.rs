@@ -37,9 +37,9 @@ impl MuellerSpectrum {
     fn with_outgoing(&self, frame: ReferenceFrame) -> MuellerSpectrum {
         let [cos, sin] = self.outgoing.doubled_angle_to(&frame);
         let mut m = self.m;
-        for j in 0..4 {
-            let (a, b) = (m[1][j], m[2][j]);
-            (m[1][j], m[2][j]) = (a * cos + b * sin, b * cos - a * sin);
+        let [_, s1, s2, _] = &mut m;
+        for (s1, s2) in s1.iter_mut().zip(s2) {
+            (*s1, *s2) = (*s1 * cos + *s2 * sin, *s2 * cos - *s1 * sin);
         }
         MuellerSpectrum { m, outgoing: frame, incoming: self.incoming }
     }
