@@ -6,7 +6,7 @@
 
 use exr::prelude::*;
 
-use crate::{ImageError, SpectralImage};
+use crate::{Channel, ImageError, SpectralImage};
 
 /// ZIP shrinks at most by about this factor: a file that claims more pixels than that is not believed.
 const LARGEST_COMPRESSION: u64 = 1100;
@@ -83,10 +83,28 @@ fn from_layer(layer: &Layer<AnyChannels<FlatSamples>>) -> std::result::Result<Sp
         radiance,
         stokes,
         xyz: xyz.map(|((x, y), z)| [x, y, z]).collect(),
+        channels: further_channels(&layer.channel_data.list),
         metadata,
     };
     image.verify()?;
     Ok(image)
+}
+
+/// What is neither a band, nor XYZ, nor their sRGB, by name.
+fn further_channels(channels: &[AnyChannel<FlatSamples>]) -> Vec<Channel> {
+    let known = |name: &str| {
+        ["R", "G", "B", "XYZ.X", "XYZ.Y", "XYZ.Z"].contains(&name)
+            || ['0', '1', '2', '3'].iter().any(|&parameter| wavelength_nm(name, parameter).is_some())
+    };
+    let mut further: Vec<Channel> = channels
+        .iter()
+        .map(|channel| (channel.name.to_string(), channel))
+        .filter(|(name, _)| !known(name))
+        .map(|(name, channel)| Channel { name, samples: channel.sample_data.values_as_f32().collect() })
+        .collect();
+    further.sort_by(|a, b| a.name.cmp(&b.name));
+    further.dedup_by(|a, b| a.name == b.name);
+    further
 }
 
 /// The channels of a Stokes parameter by increasing wavelength, nm.
@@ -149,6 +167,7 @@ mod tests {
             radiance: (0..width * height * bands).map(|i| (i as f32 * 0.37).sin().abs() * 1e-3).collect(),
             stokes: None,
             xyz: (0..width * height).map(|i| [i as f32, i as f32 * 0.5, 1.0]).collect(),
+            channels: vec![],
             metadata: vec![
                 ("command".into(), "arsc render Würfel.arsl".into()),
                 ("seed".into(), "7".into()),
@@ -175,6 +194,22 @@ mod tests {
         assert_eq!(decode_exr(&encode_exr(&image).unwrap()).unwrap(), image);
         image.stokes.as_mut().unwrap().pop();
         assert!(matches!(encode_exr(&image), Err(ImageError::Shape { what: "stokes", .. })));
+    }
+
+    #[test]
+    fn further_channels_travel_with_the_image() {
+        let mut image = image();
+        let channel = |name: &str, scale: f32| Channel {
+            name: name.into(),
+            samples: (0..image.xyz.len()).map(|i| scale * i as f32).collect(),
+        };
+        image.channels = vec![channel("depth.Z", 0.5), channel("normal.X", -1.0)];
+        let read = decode_exr(&encode_exr(&image).unwrap()).unwrap();
+        assert_eq!(read, image);
+        assert_eq!(read.channel("normal.X").unwrap()[3], -3.0);
+        assert_eq!(read.channel("normal.Y"), None);
+        image.channels.swap(0, 1);
+        assert!(encode_exr(&image).is_err(), "unsorted");
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! Channels, all 32 bit: `S0.<centre>nm` per band with a decimal comma and six decimals, for polarised images `S1`, `S2` and
 //! `S3` likewise, with the attribute `polarisationHandedness` "right"; `R`, `G`, `B`, linear sRGB in
 //! which the relative luminance 1 is [`UNIT_LUMINANCE`] cd m^-2 (also the attribute `whiteLuminance`); `XYZ.X`,
-//! `XYZ.Y`, `XYZ.Z` with Y in cd m^-2. Attributes: `spectralLayoutVersion` "1.0", `emissiveUnits` "W.m^-2.sr^-1" (the
+//! `XYZ.Y`, `XYZ.Z` with Y in cd m^-2; further channels under their own names. Attributes: `spectralLayoutVersion` "1.0", `emissiveUnits` "W.m^-2.sr^-1" (the
 //! one value that the layout's readers know; the samples are densities, W m^-2 sr^-1 nm^-1, which
 //! `arsc:radianceUnits` says), `arsc:bandEdges`, and the image's metadata as `arsc:<name>`.
 //! ZIP in blocks of 16 lines, lines in increasing order, attributes sorted by name.
@@ -54,6 +54,7 @@ fn channels(image: &SpectralImage) -> Vec<AnyChannel<FlatSamples>> {
     for (i, name) in ["XYZ.X", "XYZ.Y", "XYZ.Z"].into_iter().enumerate() {
         channels.push(channel(name, image.xyz.iter().map(|p| p[i]).collect()));
     }
+    channels.extend(image.channels.iter().map(|extra| channel(&extra.name, extra.samples.clone())));
     channels
 }
 

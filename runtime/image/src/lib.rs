@@ -23,7 +23,7 @@ pub use error::ImageError;
 pub use exr_read::decode_exr;
 pub use exr_write::encode_exr;
 pub use png_write::encode_png;
-pub use spectral::SpectralImage;
+pub use spectral::{Channel, SpectralImage};
 pub use tone_map::{Exposure, tone_map};
 pub use whole_file::{check_writable, write_whole};
 

@@ -16,11 +16,27 @@ pub struct SpectralImage {
     pub stokes: Option<Vec<[f32; 3]>>,
     /// `[y][x][XYZ]`, CIE 1931 2 degree, with k = 683 lm/W: Y is luminance in cd m^-2.
     pub xyz: Vec<[f32; 3]>,
+    /// Further quantities of the pixels, by increasing name, each name once.
+    pub channels: Vec<Channel>,
     /// Free text that travels with the picture: version, scene hash, seed, samples, command line, timings.
     pub metadata: Vec<(String, String)>,
 }
 
+/// One number per pixel beside the radiance: a feature of what is seen, or a statistic of the pixel's samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// `layer.component`, such as `normal.X` or `albedo.G`.
+    pub name: String,
+    /// `[y][x]`
+    pub samples: Vec<f32>,
+}
+
 impl SpectralImage {
+    /// The samples of a channel, `None` if the image lacks it.
+    pub fn channel(&self, name: &str) -> Option<&[f32]> {
+        self.channels.iter().find(|channel| channel.name == name).map(|channel| channel.samples.as_slice())
+    }
+
     pub fn bands(&self) -> usize {
         self.band_edges_nm.len().saturating_sub(1)
     }
@@ -30,7 +46,8 @@ impl SpectralImage {
         0.5 * (self.band_edges_nm[band] + self.band_edges_nm[band + 1])
     }
 
-    /// That there is at least a pixel and a band, that edges increase, and that the buffers have the stated size.
+    /// That there is at least a pixel and a band, that edges increase, that channels are sorted, and that the buffers have
+    /// the stated size.
     pub fn verify(&self) -> Result<(), ImageError> {
         let pixels = self.width.checked_mul(self.height).unwrap_or(0);
         if pixels == 0 || self.bands() == 0 {
@@ -42,6 +59,12 @@ impl SpectralImage {
         check("radiance", self.radiance.len(), pixels.saturating_mul(self.bands()))?;
         if let Some(stokes) = &self.stokes {
             check("stokes", stokes.len(), self.radiance.len())?;
+        }
+        for channel in &self.channels {
+            check("channel", channel.samples.len(), pixels)?;
+        }
+        if !self.channels.windows(2).all(|pair| pair[0].name < pair[1].name) {
+            return Err(ImageError::NotSpectral("the channels are not sorted by distinct names".into()));
         }
         check("xyz", self.xyz.len(), pixels)
     }

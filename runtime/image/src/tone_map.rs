@@ -93,6 +93,7 @@ mod tests {
             radiance: vec![0.0; luminances.len()],
             stokes: None,
             xyz: luminances.iter().map(pixel).collect(),
+            channels: vec![],
             metadata: vec![],
         }
     }

@@ -279,7 +279,16 @@ impl Film {
         }
         let stokes = self.polarised.then_some(stokes);
         let band_edges_nm = self.bands.edges_nm();
-        SpectralImage { width, height, band_edges_nm, radiance, stokes, xyz, metadata: Vec::new() }
+        SpectralImage {
+            width,
+            height,
+            band_edges_nm,
+            radiance,
+            stokes,
+            xyz,
+            channels: Vec::new(),
+            metadata: Vec::new(),
+        }
     }
 }
 
