@@ -173,3 +173,25 @@ fn lines_along_faces_and_through_corners_of_meshes() {
         }
     }
 }
+
+/// A line that enters a mesh through a vertex passes three triangles there; the one that is hit faces the line.
+#[test]
+fn the_triangle_hit_at_a_vertex_faces_the_line() {
+    let ring = closed(meshes::torus(5, 4, 1.25, 0.25));
+    let mesh = meshes::torus(5, 4, 1.25, 0.25);
+    let map = DAffine3::from_translation(DVec3::new(0.5, 0.25, -0.125));
+    let solid = Solid { tree: Csg::Leaf(0), leaves: vec![leaf(ring, map)] };
+    let mut rng = Pcg64::seed_from_u64(3);
+    for (strategy, scene) in scenes(vec![solid]) {
+        for i in 0..4000 {
+            let vertex = map.transform_point3(mesh.position(i % mesh.positions.len() as u32));
+            let from = DVec3::from_array(std::array::from_fn(|_| f64::from(rng.random_range(-8..=8)) * 0.25));
+            let ray = Ray::new(from, (vertex - from).normalize());
+            for interval in scene.intervals(&ray) {
+                let cosine = |hit: &Option<arsc_accel::Hit>| hit.as_ref().map_or(0.0, |hit| hit.ng.dot(ray.dir));
+                let (enter, exit) = (cosine(&interval.enter), cosine(&interval.exit));
+                assert!(enter < 1e-6 && exit > -1e-6, "{strategy:?} {ray:?} {interval:?}");
+            }
+        }
+    }
+}

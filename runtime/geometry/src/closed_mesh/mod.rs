@@ -27,6 +27,9 @@ pub use projection::{Passage, Projection};
 /// Direction of the rays that decide membership: about z, along no plane that meshes are made of.
 const PROBE: DVec3 = DVec3::new(0.132_719, 0.071_933, 1.0);
 
+/// Crossings so far apart, of the largest number involved, are at one place: some times the error of [`crossing`].
+const SAME_PLACE: f64 = 1.0 / (1u64 << 44) as f64;
+
 /// A mesh whose surface bounds a solid. Shared: it is cheap to place it many times.
 pub struct ClosedMesh {
     name: Arc<str>,
@@ -189,20 +192,40 @@ impl ClosedMesh {
     pub fn contains(&self, p: DVec3) -> bool {
         let mut is_inside = false;
         if self.bounds.contains(p) {
-            self.visit_crossings(p, PROBE, |t, _| is_inside ^= t > 0.0);
+            self.visit_crossings(p, PROBE, |passage, _| is_inside ^= passage.t > 0.0);
         }
         is_inside
     }
 
-    /// All crossings of the line, an even number, sorted; those at one place by triangle.
+    /// All crossings of the line, an even number, sorted; those at one place by triangle, but so that the line goes in
+    /// and out by turns.
     pub fn crossings(&self, origin: DVec3, dir: DVec3) -> Crossings {
-        let mut found: SmallVec<[(f64, u32); 16]> = SmallVec::new();
-        self.visit_crossings(origin, dir, |t, triangle| found.push((t, triangle)));
-        found.sort_unstable_by_key(|&(_, triangle)| triangle);
-        Crossings::sorted(&mut found)
+        let mut found: SmallVec<[(Passage, u32); 16]> = SmallVec::new();
+        self.visit_crossings(origin, dir, |passage, triangle| found.push((passage, triangle)));
+        found.sort_unstable_by(|a, b| a.0.t.total_cmp(&b.0.t).then(a.1.cmp(&b.1)));
+        self.alternate(&mut found);
+        let mut crossings = Crossings::NONE;
+        for (passage, triangle) in found {
+            crossings.push(passage.t, triangle);
+        }
+        crossings
     }
 
-    fn visit_crossings(&self, origin: DVec3, dir: DVec3, visit: impl FnMut(f64, u32)) {
+    /// Orders triangles that the line passes at one place, through an edge or a vertex. Places stay.
+    fn alternate(&self, found: &mut [(Passage, u32)]) {
+        for i in 0..found.len() {
+            let place = found[i].0.t;
+            let same = place + (self.magnitude() + place.abs()) * SAME_PLACE;
+            let fits = |(passage, _): &(Passage, u32)| passage.enters == (i % 2 == 0);
+            let mut here = (i..found.len()).take_while(|&k| found[k].0.t <= same);
+            if let Some(k) = here.find(|&k| fits(&found[k])).filter(|&k| k > i) {
+                found.swap(i, k);
+                (found[i].0.t, found[k].0.t) = (found[k].0.t, found[i].0.t);
+            }
+        }
+    }
+
+    fn visit_crossings(&self, origin: DVec3, dir: DVec3, visit: impl FnMut(Passage, u32)) {
         let line = Projection::new(origin, dir);
         match line.major() {
             0 => self.visit_along::<0>(&line, visit),
@@ -211,12 +234,12 @@ impl ClosedMesh {
         }
     }
 
-    fn visit_along<const MAJOR: usize>(&self, line: &Projection, mut visit: impl FnMut(f64, u32)) {
+    fn visit_along<const MAJOR: usize>(&self, line: &Projection, mut visit: impl FnMut(Passage, u32)) {
         self.bvh.visit(
             |node| line.meets_box::<MAJOR>(node.min, node.max),
             |triangle| {
                 if let Some(passage) = self.crossing_along::<MAJOR>(line, triangle) {
-                    visit(passage.t, triangle);
+                    visit(passage, triangle);
                 }
                 true
             },
