@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use arsc_diagnostics::SourceId;
-use arsc_sema::{AssetError, Assets, MeshFile};
+use arsc_sema::{AssetError, Assets, DataFile, MeshFile};
 
 use crate::{LoadError, Loader, paths, stdlib};
 
@@ -58,6 +58,12 @@ impl Assets for LoaderAssets<'_> {
             Ok(MeshFile { path: path.as_str().into(), mesh })
         });
         outcome.clone()
+    }
+
+    fn bytes(&self, from: SourceId, path: &str) -> Result<DataFile, AssetError> {
+        let path = self.place(from, path).map_err(|_| AssetError::NotFound)?;
+        let bytes = self.loader.bytes(&path).map_err(asset_error)?;
+        Ok(DataFile { path: path.into(), bytes })
     }
 }
 

@@ -27,6 +27,11 @@ pub trait Loader {
     /// A triangle mesh. Asked for once for each path.
     fn mesh(&self, path: &str) -> Result<Arc<TriangleMesh>, LoadError>;
 
+    /// The bytes of a data file: an image, a grid of densities.
+    fn bytes(&self, _path: &str) -> Result<Arc<[u8]>, LoadError> {
+        Err(LoadError::NotFound)
+    }
+
     /// The names of the files in a folder, `""` for the root script's, for messages that suggest one. Empty if unknown.
     fn list(&self, _folder: &str) -> Vec<String> {
         Vec::new()

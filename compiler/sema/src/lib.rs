@@ -54,6 +54,14 @@ pub struct MeshFile {
     pub mesh: Arc<TriangleMesh>,
 }
 
+/// A data file as it is.
+#[derive(Clone, Debug)]
+pub struct DataFile {
+    /// Relative to the root script's folder.
+    pub path: Arc<str>,
+    pub bytes: Arc<[u8]>,
+}
+
 /// Data files named in scripts, relative to the module that names them.
 pub trait Assets {
     /// The text of a small table (a spectrum).
@@ -61,6 +69,11 @@ pub trait Assets {
 
     /// A triangle mesh. The same file gives the same mesh without being read again.
     fn mesh(&self, from: SourceId, path: &str) -> Result<MeshFile, AssetError>;
+
+    /// The bytes of a file: an image, a grid of densities. Read anew each time.
+    fn bytes(&self, _from: SourceId, _path: &str) -> Result<DataFile, AssetError> {
+        Err(AssetError::NotFound)
+    }
 }
 
 /// Ceilings on what a script may use. Exceeding one is a diagnostic.

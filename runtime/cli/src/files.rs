@@ -11,8 +11,8 @@ use arsc_driver::{LoadError, Loader};
 use arsc_geometry::TriangleMesh;
 use arsc_mesh::MeshError;
 
-/// Largest script or table, bytes. The compiler has its own, smaller limit.
-const LARGEST_TEXT: u64 = 256 << 20;
+/// Largest script, table or data file, bytes. The compiler has its own, smaller limit of texts.
+const LARGEST_FILE: u64 = 256 << 20;
 
 /// Names of a folder that are looked at for one to suggest.
 const LONGEST_LIST: usize = 1_000;
@@ -64,6 +64,14 @@ impl Loader for ScriptFolder {
         Ok(Arc::new(mesh))
     }
 
+    fn bytes(&self, path: &str) -> Result<Arc<[u8]>, LoadError> {
+        let real = self.resolve(path)?;
+        if !real.is_file() {
+            return Err(LoadError::Other("not a file".into()));
+        }
+        read_bytes(std::fs::File::open(real).map_err(load_error)?).map(Arc::from)
+    }
+
     fn list(&self, folder: &str) -> Vec<String> {
         let folder = if folder.is_empty() { "." } else { folder };
         let entries = self.resolve(folder).ok().and_then(|real| std::fs::read_dir(real).ok());
@@ -85,13 +93,17 @@ pub fn read_script(scene: &Path) -> Result<Arc<str>, LoadError> {
     read_text(std::fs::File::open(scene).map_err(load_error)?)
 }
 
-fn read_text(from: impl Read) -> Result<Arc<str>, LoadError> {
+fn read_bytes(from: impl Read) -> Result<Vec<u8>, LoadError> {
     let mut bytes = Vec::new();
-    let read = from.take(LARGEST_TEXT + 1).read_to_end(&mut bytes).map_err(load_error)?;
-    if read as u64 > LARGEST_TEXT {
+    let read = from.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(load_error)?;
+    if read as u64 > LARGEST_FILE {
         return Err(LoadError::TooLarge { bytes: read as u64 });
     }
-    match String::from_utf8(bytes) {
+    Ok(bytes)
+}
+
+fn read_text(from: impl Read) -> Result<Arc<str>, LoadError> {
+    match String::from_utf8(read_bytes(from)?) {
         Ok(text) => Ok(text.into()),
         Err(error) => Err(LoadError::NotText(error.utf8_error().valid_up_to())),
     }
