@@ -72,17 +72,20 @@ pub struct AreaSample {
 
 impl Hit {
     /// The ray that leaves towards `wi` (unit).
+    #[inline]
     pub fn spawn(&self, wi: DVec3) -> Ray {
         Ray::new(offset(self.p, self.p_error, self.ng, wi), wi)
     }
 
     /// The segment to a point that is on no surface (a point light): its `dir` is unit, `t_max` just short of it.
     /// `None` if the two coincide.
+    #[inline]
     pub fn spawn_to(&self, target: DVec3) -> Option<Ray> {
         segment(offset(self.p, self.p_error, self.ng, target - self.p), target)
     }
 
     /// The segment to a chosen point, which ends before that point's surface. `None` if the two coincide.
+    #[inline]
     pub fn spawn_to_sample(&self, target: &AreaSample) -> Option<Ray> {
         let from = offset(self.p, self.p_error, self.ng, target.p - self.p);
         segment(from, offset(target.p, target.p_error, target.ng, self.p - target.p))
@@ -91,16 +94,19 @@ impl Hit {
 
 impl AreaSample {
     /// The segment from a point that is on no surface to this one, ending before its surface. `None` if the two coincide.
+    #[inline]
     pub fn segment_from(&self, from: DVec3) -> Option<Ray> {
         segment(from, offset(self.p, self.p_error, self.ng, from - self.p))
     }
 }
 
 /// `p` moved off the surface to the side of `towards`.
+#[inline]
 fn offset(p: DVec3, p_error: f64, ng: DVec3, towards: DVec3) -> DVec3 {
     p + ng * (2.0 * p_error).copysign(towards.dot(ng))
 }
 
+#[inline]
 fn segment(from: DVec3, to: DVec3) -> Option<Ray> {
     let length = (to - from).length();
     let dir = (to - from) / length;

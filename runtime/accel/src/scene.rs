@@ -401,8 +401,9 @@ impl Scene {
                 let point = match &self.surfaces()[surface as usize] {
                     SurfaceModel::Flat(flat) => flat.surface(hit.p),
                     SurfaceModel::Triangles(mesh) => {
-                        let weights = mesh.crossing(hit.face as usize, hit.p, hit.ng).map_or(DVec2::ZERO, |(_, w)| w);
-                        mesh.surface(hit.face as usize, weights).0
+                        let edges = mesh.edges(hit.face as usize);
+                        let crossing = edges.crossing(hit.p, hit.ng, f64::INFINITY);
+                        mesh.surface(hit.face as usize, crossing.map_or(DVec2::ZERO, |crossing| crossing.weights))
                     }
                 };
                 Parametrization { uv: point.uv, dpdu: point.dpdu }
@@ -426,13 +427,13 @@ impl Scene {
             }
             Target::Flat { surface } => {
                 let SurfaceModel::Flat(flat) = &self.surfaces()[surface as usize] else { unreachable!() };
-                let point = flat.surface(p);
-                (point.into(), point.n, 0, false, false)
+                let foot = flat.foot(p);
+                (foot, foot.n, 0, false, false)
             }
             Target::Triangle { surface, triangle, weights } => {
                 let SurfaceModel::Triangles(mesh) = &self.surfaces()[surface as usize] else { unreachable!() };
-                let (point, ns) = mesh.surface(triangle as usize, weights);
-                (point.into(), ns, triangle, false, false)
+                let (foot, ns) = mesh.foot(triangle as usize, weights);
+                (foot, ns, triangle, false, false)
             }
         };
         let sign = if flipped { -1.0 } else { 1.0 };

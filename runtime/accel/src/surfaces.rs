@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
-use arsc_geometry::{Aabb, SurfacePoint, TriangleMesh, invert};
+use arsc_geometry::{Aabb, Foot, SurfacePoint, TriangleMesh, invert};
 
 use crate::{AccelError, Surface, SurfaceShape};
 
@@ -34,7 +34,7 @@ impl SurfaceModel {
         let map = surface.world_from_object;
         let inverse = invert(&map).ok_or(fail("the map has no finite inverse"))?;
         let positive = |x: f64| x > 0.0 && x.is_finite();
-        let flat = |outline| Ok(SurfaceModel::Flat(Flat { outline, map, inverse }));
+        let flat = |outline| Ok(SurfaceModel::Flat(Flat::new(outline, map, inverse)));
         match &surface.shape {
             SurfaceShape::Rectangle { size } if positive(size.x) && positive(size.y) => {
                 flat(Outline::Rectangle { half: *size * 0.5 })
@@ -63,7 +63,7 @@ impl SurfaceModel {
     /// World area; infinite for a plane.
     pub fn area(&self) -> f64 {
         match self {
-            SurfaceModel::Flat(flat) => flat.area(),
+            SurfaceModel::Flat(flat) => flat.area,
             SurfaceModel::Triangles(triangles) => triangles.area(),
         }
     }
@@ -90,10 +90,32 @@ pub struct Flat {
     outline: Outline,
     map: DAffine3,
     inverse: DAffine3,
+    normal: DVec3,
+    area: f64,
+    /// The error of a point is the first times its largest coordinate (and at least the third), plus the second.
+    error: [f64; 3],
 }
 
 impl Flat {
+    fn new(outline: Outline, map: DAffine3, inverse: DAffine3) -> Flat {
+        let row = inverse.matrix3.transpose().z_axis;
+        let element = map.matrix3.x_axis.cross(map.matrix3.y_axis).length();
+        let (size, area) = match outline {
+            Outline::Rectangle { half } => (half.max_element(), 4.0 * half.x * half.y * element),
+            Outline::Disk { radius } => (radius, std::f64::consts::PI * radius * radius * element),
+            Outline::Plane => (0.0, f64::INFINITY),
+        };
+        // That of the height over the plane, mapped back, that of the other coordinates, and that of the sizes.
+        let sizes = map.matrix3.x_axis.length().max(map.matrix3.y_axis.length()) * size;
+        let factor = 1.0 + row.abs().element_sum() / row.length();
+        let constant = sizes + inverse.translation.z.abs() / row.length();
+        let unit = ROUNDINGS * f64::EPSILON;
+        let error = [unit * factor, unit * constant, map.translation.abs().max_element()];
+        Flat { outline, map, inverse, normal: row.normalize(), area, error }
+    }
+
     /// Parameter of the crossing.
+    #[inline]
     pub fn crossing(&self, origin: DVec3, dir: DVec3) -> Option<f64> {
         let o = self.inverse.transform_point3(origin);
         let d = self.inverse.transform_vector3(dir);
@@ -108,48 +130,39 @@ impl Flat {
     }
 
     /// Distance along `dir` within which another surface at `p` coincides.
+    #[inline]
     pub fn tolerance(&self, p: DVec3, dir: DVec3) -> f64 {
-        COINCIDENT * self.error_at(p) / self.normal().dot(dir).abs().max(1e-3)
+        COINCIDENT * self.error_at(p) / self.normal.dot(dir).abs().max(1e-3)
     }
 
     /// The surface point at `p`, which lies close to it.
     pub fn surface(&self, p: DVec3) -> SurfacePoint {
+        self.point(self.inverse.transform_point3(p).truncate())
+    }
+
+    /// The same, with the normal alone.
+    #[inline]
+    pub fn foot(&self, p: DVec3) -> Foot {
         let local = self.inverse.transform_point3(p).truncate();
+        Foot { p: self.map.transform_point3(local.extend(0.0)), p_error: self.error_at(p), n: self.normal }
+    }
+
+    fn point(&self, local: DVec2) -> SurfacePoint {
         let uv = match self.outline {
             Outline::Rectangle { half } => local / (2.0 * half) + 0.5,
             Outline::Disk { radius } => local / (2.0 * radius) + 0.5,
             Outline::Plane => local,
         };
-        let n = self.normal();
-        let dpdu = self.map.matrix3.x_axis;
-        SurfacePoint {
-            p: self.map.transform_point3(local.extend(0.0)),
-            p_error: self.error_at(p),
-            n,
-            uv,
-            dpdu: (dpdu - n * n.dot(dpdu)).normalize(),
-        }
+        let (n, dpdu) = (self.normal, self.map.matrix3.x_axis);
+        let p = self.map.transform_point3(local.extend(0.0));
+        SurfacePoint { p, p_error: self.error_at(p), n, uv, dpdu: (dpdu - n * n.dot(dpdu)).normalize() }
     }
 
-    fn normal(&self) -> DVec3 {
-        self.inverse.matrix3.transpose().z_axis.normalize()
-    }
-
-    /// Bound on the error of a point near `p`: that of the height over the plane, mapped back.
+    /// Bound on the error of a point near `p`.
+    #[inline]
     fn error_at(&self, p: DVec3) -> f64 {
-        let row = self.inverse.matrix3.transpose().z_axis;
-        let here = p.abs().max_element().max(self.map.translation.abs().max_element());
-        let sizes = self.map.matrix3.x_axis.length().max(self.map.matrix3.y_axis.length()) * self.size();
-        let height = row.abs().element_sum() * here + self.inverse.translation.z.abs();
-        ROUNDINGS * f64::EPSILON * (here + sizes + height / row.length())
-    }
-
-    fn size(&self) -> f64 {
-        match self.outline {
-            Outline::Rectangle { half } => half.max_element(),
-            Outline::Disk { radius } => radius,
-            Outline::Plane => 0.0,
-        }
+        let [factor, constant, least] = self.error;
+        factor * p.abs().max_element().max(least) + constant
     }
 
     fn bounds(&self) -> Aabb {
@@ -168,15 +181,6 @@ impl Flat {
         Aabb::new(self.map.translation - half, self.map.translation + half).dilated(slack)
     }
 
-    fn area(&self) -> f64 {
-        let element = self.map.matrix3.x_axis.cross(self.map.matrix3.y_axis).length();
-        match self.outline {
-            Outline::Rectangle { half } => 4.0 * half.x * half.y * element,
-            Outline::Disk { radius } => std::f64::consts::PI * radius * radius * element,
-            Outline::Plane => f64::INFINITY,
-        }
-    }
-
     fn sample(&self, u: [f64; 2]) -> Option<SurfacePoint> {
         let local = match self.outline {
             Outline::Rectangle { half } => (DVec2::from_array(u) * 2.0 - 1.0) * half,
@@ -186,8 +190,72 @@ impl Flat {
             }
             Outline::Plane => return None,
         };
-        Some(self.surface(self.map.transform_point3(local.extend(0.0))))
+        Some(self.point(local))
     }
+}
+
+/// A triangle: one corner, and from there the edges to the other two.
+#[derive(Clone, Copy, Debug)]
+pub struct Edges {
+    a: DVec3,
+    ab: DVec3,
+    ac: DVec3,
+}
+
+/// Where a line meets a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Crossing {
+    pub t: f64,
+    /// Of the second and third corner.
+    pub weights: DVec2,
+    /// Distance along the line per distance from the plane; at most 1000.
+    pub slant: f64,
+}
+
+impl Edges {
+    #[inline]
+    pub fn new([a, b, c]: [DVec3; 3]) -> Edges {
+        Edges { a, ab: b - a, ac: c - a }
+    }
+
+    pub fn corners(&self) -> [DVec3; 3] {
+        [self.a, self.a + self.ab, self.a + self.ac]
+    }
+
+    /// Twice the area, along the normal.
+    #[inline]
+    pub fn cross(&self) -> DVec3 {
+        self.ab.cross(self.ac)
+    }
+
+    #[inline]
+    fn at(&self, w: DVec2) -> DVec3 {
+        self.a + self.ab * w.x + self.ac * w.y
+    }
+
+    /// Where the line meets the triangle's plane; `dir` is unit. `None` beyond the edges, by more than `margin` of the
+    /// triangle's size, and for what is parallel or degenerate.
+    #[inline]
+    pub fn crossing(&self, origin: DVec3, dir: DVec3, margin: f64) -> Option<Crossing> {
+        // Möller and Trumbore 1997, with the triple products taken the other way round: the normal gives the slant.
+        let (normal, oa) = (self.cross(), self.a - origin);
+        let inverse = 1.0 / dir.dot(normal);
+        let around = oa.cross(dir);
+        let weights = DVec2::new(self.ac.dot(around), -self.ab.dot(around)) * inverse;
+        if !(weights.min_element() >= -margin && weights.x + weights.y <= 1.0 + margin) {
+            return None;
+        }
+        let t = oa.dot(normal) * inverse;
+        let slant = (normal.length() * inverse).abs().min(1e3);
+        t.is_finite().then_some(Crossing { t, weights, slant })
+    }
+}
+
+/// Never on an edge: a ray that leaves from there would lie in the neighbour's plane.
+#[inline]
+fn inner_weights(weights: DVec2) -> DVec2 {
+    let w = weights.max(DVec2::splat(EDGE));
+    if w.x + w.y > 1.0 - EDGE { w * ((1.0 - EDGE) / (w.x + w.y)) } else { w }
 }
 
 /// Triangles in the world.
@@ -198,8 +266,11 @@ pub struct Triangles {
     /// Inverse transpose, of normals.
     normal_map: DMat3,
     bounds: Aabb,
-    magnitude: f64,
+    /// Bound on the error of any point.
+    error: f64,
     mirrored: bool,
+    /// The map changes nothing.
+    in_place: bool,
     /// Sums of the areas up to and including each triangle, made when first asked for.
     cumulative_area: OnceLock<Vec<f64>>,
 }
@@ -255,7 +326,8 @@ impl Triangles {
             map: *map,
             normal_map: inverse.matrix3.transpose(),
             bounds,
-            magnitude,
+            error: ROUNDINGS * f64::EPSILON * magnitude,
+            in_place: *map == DAffine3::IDENTITY,
             mirrored: map.matrix3.determinant() < 0.0,
             cumulative_area: OnceLock::new(),
         }))
@@ -270,57 +342,50 @@ impl Triangles {
         }
     }
 
-    /// The four corners of a quad.
-    pub fn quad(&self) -> Option<[DVec3; 4]> {
-        match &self.content {
-            Content::Quad(corners) => Some(*corners),
-            _ => None,
-        }
-    }
-
     #[inline]
     pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
         match &self.content {
             Content::Triangle(corners) => *corners,
             Content::Quad(corners) => QUAD[triangle].map(|i| corners[i as usize]),
+            Content::Mesh(mesh) if self.in_place => mesh.corners(triangle),
             Content::Mesh(mesh) => mesh.corners(triangle).map(|p| self.map.transform_point3(p)),
         }
     }
 
-    fn cross(&self, triangle: usize) -> DVec3 {
-        let [a, b, c] = self.corners(triangle);
-        (b - a).cross(c - a)
+    #[inline]
+    pub fn edges(&self, triangle: usize) -> Edges {
+        Edges::new(self.corners(triangle))
     }
 
-    /// Where the ray meets the triangle's plane, with weights of the second and third corner; `None` when parallel or
-    /// degenerate. The weights are outside the simplex when the ray passes beside the triangle.
-    pub fn crossing(&self, triangle: usize, origin: DVec3, dir: DVec3) -> Option<(f64, DVec2)> {
-        // Möller and Trumbore 1997.
-        let [a, b, c] = self.corners(triangle);
-        let (ab, ac, ao) = (b - a, c - a, origin - a);
-        let across = dir.cross(ac);
-        let determinant = ab.dot(across);
-        let around = ao.cross(ab);
-        let inverse = 1.0 / determinant;
-        let weights = DVec2::new(ao.dot(across), dir.dot(around)) * inverse;
-        let t = ac.dot(around) * inverse;
-        (t.is_finite() && weights.is_finite()).then_some((t, weights))
+    fn cross(&self, triangle: usize) -> DVec3 {
+        self.edges(triangle).cross()
+    }
+
+    /// What [`Crossing::slant`] is multiplied by for the distance within which another surface coincides.
+    #[inline]
+    pub fn tolerance(&self) -> f64 {
+        COINCIDENT * self.error
     }
 
     /// The point with these weights of the second and third corner, moved to just within the triangle; shading normal
     /// beside.
-    pub fn surface(&self, triangle: usize, weights: DVec2) -> (SurfacePoint, DVec3) {
-        // Never on an edge: a ray that leaves from there would lie in the neighbour's plane.
-        let mut w = weights.max(DVec2::splat(EDGE));
-        if w.x + w.y > 1.0 - EDGE {
-            w *= (1.0 - EDGE) / (w.x + w.y);
-        }
-        let [a, b, c] = self.corners(triangle);
-        let (ab, ac) = (b - a, c - a);
-        let mut n = ab.cross(ac).normalize_or(DVec3::Z);
-        if self.mirrored {
-            n = -n;
-        }
+    #[inline]
+    pub fn foot(&self, triangle: usize, weights: DVec2) -> (Foot, DVec3) {
+        let (w, edges) = (inner_weights(weights), self.edges(triangle));
+        let n = self.normal(&edges);
+        let ns = self.shading_normal(triangle, w).map_or(n, |ns| if ns.dot(n) < 0.0 { -ns } else { ns });
+        (Foot { p: edges.at(w), p_error: self.error, n }, ns)
+    }
+
+    fn normal(&self, edges: &Edges) -> DVec3 {
+        let n = edges.cross().normalize_or(DVec3::Z);
+        if self.mirrored { -n } else { n }
+    }
+
+    /// The same point, with its coordinates.
+    pub fn surface(&self, triangle: usize, weights: DVec2) -> SurfacePoint {
+        let (w, edges) = (inner_weights(weights), self.edges(triangle));
+        let (n, Edges { ab, ac, .. }) = (self.normal(&edges), edges);
         let (uv, along) = match self.content.uvs(triangle) {
             None => (w, ab),
             Some([ua, ub, uc]) => {
@@ -329,25 +394,13 @@ impl Triangles {
             }
         };
         let dpdu = (along - n * n.dot(along)).try_normalize().unwrap_or_else(|| n.any_orthonormal_vector());
-        let p = a + ab * w.x + ac * w.y;
-        let ns = self.shading_normal(triangle, w).map_or(n, |ns| if ns.dot(n) < 0.0 { -ns } else { ns });
-        (SurfacePoint { p, p_error: self.error(), n, uv, dpdu }, ns)
+        SurfacePoint { p: edges.at(w), p_error: self.error, n, uv, dpdu }
     }
 
     fn shading_normal(&self, triangle: usize, w: DVec2) -> Option<DVec3> {
         let Content::Mesh(mesh) = &self.content else { return None };
         let [na, nb, nc] = mesh.corner_normals(triangle)?.map(|n| self.normal_map.mul_vec3(n).normalize_or_zero());
         (na * (1.0 - w.x - w.y) + nb * w.x + nc * w.y).try_normalize()
-    }
-
-    /// Distance along `dir` within which another surface coincides with a triangle.
-    pub fn tolerance(&self, triangle: usize, dir: DVec3) -> f64 {
-        COINCIDENT * self.error() / self.cross(triangle).normalize_or(dir).dot(dir).abs().max(1e-3)
-    }
-
-    /// Bound on the error of any point.
-    fn error(&self) -> f64 {
-        ROUNDINGS * f64::EPSILON * self.magnitude
     }
 
     fn sums(&self) -> &[f64] {
@@ -370,6 +423,6 @@ impl Triangles {
         let triangle = self.sums().partition_point(|&sum| sum <= wanted).min(self.len().checked_sub(1)?);
         // Uniform over the triangle by folding the square (Heitz 2019).
         let weights = if u[0] + u[1] > 1.0 { DVec2::new(1.0 - u[0], 1.0 - u[1]) } else { DVec2::from_array(u) };
-        Some(self.surface(triangle, weights).0)
+        Some(self.surface(triangle, weights))
     }
 }

@@ -9,6 +9,7 @@ use arsc_embree::{
     Scene as EmbreeScene, SceneBuilder, Step,
 };
 use arsc_geometry::{Aabb, Ray};
+use glam::DVec3;
 
 use crate::AccelError;
 use crate::frame::Frame;
@@ -16,7 +17,7 @@ use crate::level::{Level, Prototype};
 use crate::nearest::{Candidate, Target};
 use crate::query::{Extent, Mode, Query, View};
 use crate::strategies::plain::{Item, Plain};
-use crate::surfaces::{Flat, SurfaceModel, Triangles};
+use crate::surfaces::{Edges, Flat, SurfaceModel, Triangles};
 
 /// What a geometry of the Embree scene is; indexed by [`GeometryId`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,12 +27,17 @@ enum Kind {
     Instances,
     /// Of solids; see [`crate::facets`].
     Facets,
-    Triangles,
-    Quads,
+    /// Surfaces of few triangles.
+    Loose,
+    /// All triangles of one surface.
+    Mesh(u32),
 }
 
 /// Triangles are met this far beyond their edges, in units of their size, so that no ray passes between two.
 const SEAM: f64 = 1e-12;
+
+/// Surfaces of at most so many triangles share one geometry, with the triangles side by side.
+const FEW: usize = 64;
 
 /// From so many triangles on, trees without spatial splits: those need several times the memory while they are built.
 const LARGE: usize = 4_000_000;
@@ -74,10 +80,9 @@ pub struct World {
     kinds: Vec<Kind>,
     /// Surfaces behind the primitives of `Kind::Flats`.
     flats: Vec<u32>,
-    /// Surfaces behind the native triangles, ascending.
-    runs: Vec<Run>,
-    /// Surface behind each native quad.
-    quads: Vec<u32>,
+    loose: Vec<Loose>,
+    /// Surfaces with a geometry of their own.
+    meshes: Vec<u32>,
     /// Instances behind the primitives of `Kind::Instances`, and those that Embree cannot hold.
     placed: Vec<u32>,
     open_instances: Vec<u32>,
@@ -87,20 +92,29 @@ pub struct World {
     extent: Extent,
 }
 
-/// The native triangles from `first` to the next run's are those of one surface, in its order.
+/// A triangle of a small surface, ready for rays.
 #[derive(Clone, Copy, Debug)]
-struct Run {
-    first: u32,
+struct Loose {
+    edges: Edges,
+    tolerance: f64,
     surface: u32,
+    triangle: u32,
 }
 
-/// Vertices and indices for Embree.
-#[derive(Default)]
+/// A geometry of triangles for Embree, none sharing a vertex.
 struct Native {
-    triangle_vertices: Vec<[f32; 3]>,
+    vertices: Vec<[f32; 3]>,
     triangles: Vec<[u32; 3]>,
-    quad_vertices: Vec<[f32; 3]>,
-    quads: Vec<[u32; 4]>,
+}
+
+impl Native {
+    /// Somewhat larger than they are.
+    fn new(extent: &Extent, corners: impl ExactSizeIterator<Item = [DVec3; 3]>) -> Native {
+        let triangles = (0..corners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let mut vertices = Vec::with_capacity(3 * corners.len());
+        vertices.extend(corners.flat_map(|corners| extent.grown(corners)));
+        Native { vertices, triangles }
+    }
 }
 
 /// One device serves all scenes of the program.
@@ -123,8 +137,8 @@ impl World {
             instances,
             kinds: vec![],
             flats: vec![],
-            runs: vec![],
-            quads: vec![],
+            loose: vec![],
+            meshes: vec![],
             placed: vec![],
             open_instances: vec![],
             open_surfaces: vec![],
@@ -132,7 +146,6 @@ impl World {
             extent: Extent::new(Aabb::EMPTY),
         };
         let mut bounds = world.level.bounds();
-        let mut native = Native::default();
         let mut finite_surfaces = vec![];
         for surface in 0..world.surfaces.len() as u32 {
             let hull = world.surfaces[surface as usize].bounds();
@@ -158,10 +171,10 @@ impl World {
             world.placed.clear();
         } else {
             for surface in finite_surfaces {
-                world.add_surface(surface, &mut native);
+                world.add_surface(surface);
             }
         }
-        world.commit(native)
+        world.commit()
     }
 
     /// The placed instances and these surfaces in a tree of our own.
@@ -199,30 +212,20 @@ impl World {
         }
     }
 
-    fn add_surface(&mut self, surface: u32, native: &mut Native) {
+    fn add_surface(&mut self, surface: u32) {
         match &self.surfaces[surface as usize] {
             SurfaceModel::Flat(_) => self.flats.push(surface),
-            SurfaceModel::Triangles(mesh) => match mesh.quad() {
-                Some(corners) => {
-                    native.quads.push([0, 1, 2, 3].map(|i| i + native.quad_vertices.len() as u32));
-                    native.quad_vertices.extend(self.extent.grown(corners));
-                    self.quads.push(surface);
-                }
-                None => {
-                    self.runs.push(Run { first: native.triangles.len() as u32, surface });
-                    native.triangles.reserve(mesh.len());
-                    native.triangle_vertices.reserve(3 * mesh.len());
-                    for triangle in 0..mesh.len() {
-                        let first = native.triangle_vertices.len() as u32;
-                        native.triangles.push([first, first + 1, first + 2]);
-                        native.triangle_vertices.extend(self.extent.grown(mesh.corners(triangle)));
-                    }
-                }
-            },
+            SurfaceModel::Triangles(mesh) if mesh.len() > FEW => self.meshes.push(surface),
+            SurfaceModel::Triangles(mesh) => self.loose.extend((0..mesh.len()).map(|triangle| Loose {
+                edges: mesh.edges(triangle),
+                tolerance: mesh.tolerance(),
+                surface,
+                triangle: triangle as u32,
+            })),
         }
     }
 
-    fn commit(mut self, native: Native) -> Result<EmbreeScene<World>, AccelError> {
+    fn commit(mut self) -> Result<EmbreeScene<World>, AccelError> {
         let users = [
             (Kind::Solids, self.level.primitive_count()),
             (Kind::Flats, self.flats.len()),
@@ -232,27 +235,36 @@ impl World {
         let users = users.into_iter().filter(|&(_, count)| count > 0);
         let users: Vec<(Kind, usize)> = users.collect();
         self.kinds.extend(users.iter().map(|&(kind, _)| kind));
-        if !native.triangles.is_empty() {
-            self.kinds.push(Kind::Triangles);
+        if !self.loose.is_empty() {
+            self.kinds.push(Kind::Loose);
         }
-        if !native.quads.is_empty() {
-            self.kinds.push(Kind::Quads);
-        }
-        let kinds = self.kinds.clone();
-        let quality = if native.triangles.len() > LARGE { BuildQuality::Medium } else { BuildQuality::High };
-        let mut builder = SceneBuilder::new(device()?, Arc::new(self), quality)?;
+        self.kinds.extend(self.meshes.iter().map(|&surface| Kind::Mesh(surface)));
+        let triangles = |surface: &u32| self.triangles(*surface).map_or(0, Triangles::len);
+        let large = self.loose.len() + self.meshes.iter().map(triangles).sum::<usize>() > LARGE;
+        let quality = if large { BuildQuality::Medium } else { BuildQuality::High };
+        let world = Arc::new(self);
+        let mut builder = SceneBuilder::new(device()?, world.clone(), quality)?;
         for (_, count) in users {
             builder.user_geometry(count)?;
         }
-        if kinds.contains(&Kind::Triangles) {
-            builder.triangles(&native.triangle_vertices, &native.triangles, true)?;
+        // Embree has its own copy of each, and needs room for the build.
+        if !world.loose.is_empty() {
+            let native = Native::new(&world.extent, world.loose.iter().map(|loose| loose.edges.corners()));
+            builder.triangles(&native.vertices, &native.triangles, true)?;
         }
-        if kinds.contains(&Kind::Quads) {
-            builder.quads(&native.quad_vertices, &native.quads, true)?;
+        for mesh in world.meshes.iter().filter_map(|&surface| world.triangles(surface)) {
+            let native = Native::new(&world.extent, (0..mesh.len()).map(|triangle| mesh.corners(triangle)));
+            builder.triangles(&native.vertices, &native.triangles, true)?;
         }
-        // Embree has its own copy, and needs room for the build.
-        drop(native);
         Ok(builder.commit()?)
+    }
+
+    #[inline]
+    fn triangles(&self, surface: u32) -> Option<&Triangles> {
+        match &self.surfaces[surface as usize] {
+            SurfaceModel::Triangles(triangles) => Some(triangles),
+            SurfaceModel::Flat(_) => None,
+        }
     }
 
     /// Traces a query from the world's frame.
@@ -306,17 +318,24 @@ impl World {
     }
 
     fn visit_triangle(&self, surface: u32, mesh: &Triangles, triangle: u32, query: &mut Query) {
+        let (edges, tolerance) = (mesh.edges(triangle as usize), mesh.tolerance());
+        self.visit_loose(&Loose { edges, tolerance, surface, triangle }, query);
+    }
+
+    #[inline]
+    fn visit_loose(&self, loose: &Loose, query: &mut Query) {
         if World::ignores_surfaces(query) {
             return;
         }
         query.tests += 1;
-        let Some((t, weights)) = mesh.crossing(triangle as usize, query.ray.origin, query.ray.dir) else { return };
-        if !(weights.min_element() >= -SEAM && weights.x + weights.y <= 1.0 + SEAM) {
-            return;
-        }
-        let tolerance = mesh.tolerance(triangle as usize, query.ray.dir);
-        let part = self.first_surface_part + surface;
-        query.offer(Candidate { t, part, tolerance, target: Target::Triangle { surface, triangle, weights } });
+        let Some(crossing) = loose.edges.crossing(query.ray.origin, query.ray.dir, SEAM) else { return };
+        let Loose { surface, triangle, .. } = *loose;
+        query.offer(Candidate {
+            t: crossing.t,
+            part: self.first_surface_part + surface,
+            tolerance: loose.tolerance * crossing.slant,
+            target: Target::Triangle { surface, triangle, weights: crossing.weights },
+        });
     }
 
     fn visit(&self, query: &mut Query, geometry: GeometryId, primitive: u32) {
@@ -331,24 +350,18 @@ impl World {
                 }
             }
             Kind::Facets => self.level.visit_facet(primitive, query),
-            Kind::Triangles | Kind::Quads => {}
+            Kind::Loose | Kind::Mesh(_) => {}
         }
     }
 
     fn visit_native(&self, query: &mut Query, candidate: &NativeCandidate) {
-        let (surface, triangles) = match self.kinds[candidate.geometry.0 as usize] {
-            Kind::Triangles => {
-                let next = self.runs.partition_point(|run| run.first <= candidate.primitive);
-                let Run { first, surface } = self.runs[next - 1];
-                let triangle = candidate.primitive - first;
-                (surface, triangle..triangle + 1)
+        match self.kinds[candidate.geometry.0 as usize] {
+            Kind::Mesh(surface) => {
+                if let Some(mesh) = self.triangles(surface) {
+                    self.visit_triangle(surface, mesh, candidate.primitive, query);
+                }
             }
-            _ => (self.quads[candidate.primitive as usize], 0..2),
-        };
-        if let SurfaceModel::Triangles(mesh) = &self.surfaces[surface as usize] {
-            for triangle in triangles {
-                self.visit_triangle(surface, mesh, triangle, query);
-            }
+            _ => self.visit_loose(&self.loose[candidate.primitive as usize], query),
         }
     }
 }

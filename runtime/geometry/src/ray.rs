@@ -12,15 +12,18 @@ pub struct Ray {
 }
 
 impl Ray {
+    #[inline]
     pub fn new(origin: DVec3, dir: DVec3) -> Ray {
         Ray { origin, dir, t_max: f64::INFINITY }
     }
 
+    #[inline]
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + self.dir * t
     }
 
     /// The same ray in another frame; `t` keeps its meaning because the direction is not normalised.
+    #[inline]
     pub fn transformed(&self, map: &DAffine3) -> Ray {
         Ray { origin: map.transform_point3(self.origin), dir: map.transform_vector3(self.dir), t_max: self.t_max }
     }

@@ -49,15 +49,18 @@ impl TriangleMesh {
             && self.triangles.as_flattened().iter().all(|&i| (i as usize) < vertices)
     }
 
+    #[inline]
     pub fn position(&self, vertex: u32) -> DVec3 {
         Vec3::from_array(self.positions[vertex as usize]).as_dvec3()
     }
 
+    #[inline]
     pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].map(|vertex| self.position(vertex))
     }
 
     /// Normals at the corners, of any length; `None` when there are none.
+    #[inline]
     pub fn corner_normals(&self, triangle: usize) -> Option<[DVec3; 3]> {
         let normal = |vertex: u32| Vec3::from_array(self.normals[vertex as usize]).as_dvec3();
         (!self.normals.is_empty()).then(|| self.triangles[triangle].map(normal))
