@@ -8,6 +8,7 @@
 
 mod closed_form {
     mod determinism;
+    mod fluorescence;
     mod furnace;
     mod irradiance;
     mod media;

@@ -31,9 +31,12 @@ impl Absorptance {
     pub fn new(bsdf: &Bsdf) -> Absorptance {
         match bsdf {
             Bsdf::Conductor(conductor) => Absorptance::Conductor(conductor.clone()),
-            Bsdf::Lambert(_) | Bsdf::OrenNayar(_) | Bsdf::Mirror(_) | Bsdf::Phong(_) | Bsdf::RoughConductor(_) => {
-                Absorptance::Table(tabulate(bsdf))
-            }
+            Bsdf::Lambert(_)
+            | Bsdf::OrenNayar(_)
+            | Bsdf::Mirror(_)
+            | Bsdf::Phong(_)
+            | Bsdf::RoughConductor(_)
+            | Bsdf::Fluorescent(_) => Absorptance::Table(tabulate(bsdf)),
             _ => Absorptance::None,
         }
     }

@@ -101,6 +101,11 @@ impl Interiors {
         self.fillings[filling.0 as usize].medium
     }
 
+    /// The media, and how large is what they fill; infinite where it has no end.
+    pub fn extents(&self) -> impl Iterator<Item = (u32, f64)> {
+        self.fillings.iter().filter_map(|filling| Some((filling.medium?, filling.bounds.extent().length())))
+    }
+
     fn index(&self, filling: FillingId, wavelengths: &SampledWavelengths) -> SampledSpectrum {
         let index = &self.fillings[filling.0 as usize].index;
         index.as_ref().map_or(SampledSpectrum::ONE, |index| index.sample(wavelengths))

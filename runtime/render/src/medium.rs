@@ -2,9 +2,15 @@
 //!
 //! Coefficients are those at density 1, times a density that depends on the place. The densities have closed integrals
 //! along lines, so transmittance is exact, and distances are found by inverting it: no null collisions, no majorants.
+//!
+//! Dyes absorb, and emit what they absorbed at other wavelengths, equally into all directions. Where they emit they need
+//! not absorb, so that events of re-radiation have a rate of their own, beside that of extinction: the strength of the
+//! re-radiation, but no more than one over the size of what the medium fills, so that light still gets through.
 
 use arsc_accel::Ray;
-use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{
+    DenseSpectrum, Dye, Fluorescence, ReradiationTable, SampledSpectrum, SampledWavelengths, Spectrum, WavelengthRange,
+};
 use glam::DVec3;
 
 use crate::phase::PhaseFunction;
@@ -31,8 +37,17 @@ pub struct Medium {
     absorption: DenseSpectrum,
     scattering: DenseSpectrum,
     emission: DenseSpectrum,
+    dyes: Option<Box<Dyes>>,
     pub phase: PhaseFunction,
     pub density: Density,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Dyes {
+    absorption: DenseSpectrum,
+    reradiation: ReradiationTable,
+    /// Largest rate of re-radiation events, per metre at density 1.
+    most_events: f32,
 }
 
 /// Coefficients of a medium at density 1, per metre, at the wavelengths of a path.
@@ -42,6 +57,10 @@ pub struct Coefficients {
     pub sigma_t: SampledSpectrum,
     /// Absorption times emission over extinction: the radiance of an infinitely deep layer without scattered light.
     pub glow: SampledSpectrum,
+    /// What dyes emit per metre of constant radiance at all wavelengths.
+    pub strength: SampledSpectrum,
+    /// Events of re-radiation per metre.
+    pub shift_rate: SampledSpectrum,
 }
 
 impl Medium {
@@ -56,15 +75,55 @@ impl Medium {
     ) -> Medium {
         let table = |spectrum| DenseSpectrum::new(spectrum).clamped(0.0, f32::MAX);
         let (absorption, scattering, emission) = (table(absorption), table(scattering), table(emission));
-        Medium { absorption, scattering, emission, phase, density }
+        Medium { absorption, scattering, emission, dyes: None, phase, density }
     }
 
+    /// The same with dyes in it; their absorption is per metre.
+    pub fn with_dyes(mut self, dyes: &[Dye]) -> Medium {
+        let parts: Vec<Fluorescence> = dyes.iter().cloned().map(Fluorescence::Dye).collect();
+        let of = |dye: &Dye, nm: f64| dye.absorption.eval(nm).max(0.0);
+        let absorption = DenseSpectrum::from_fn(|nm| dyes.iter().map(|dye| of(dye, nm)).sum());
+        let reradiation = ReradiationTable::new(&parts);
+        self.dyes = (!dyes.is_empty()).then(|| Box::new(Dyes { absorption, reradiation, most_events: f32::INFINITY }));
+        self
+    }
+
+    pub fn fluoresces(&self) -> bool {
+        self.dyes.is_some()
+    }
+
+    /// The medium fills something of this size, metres.
+    pub(crate) fn fills(&mut self, extent: f64) {
+        if let Some(dyes) = &mut self.dyes
+            && extent > 0.0
+        {
+            dyes.most_events = dyes.most_events.min((1.0 / extent) as f32);
+        }
+    }
+
+    /// `range`: the wavelengths that there are.
     #[inline]
-    pub fn coefficients(&self, wavelengths: &SampledWavelengths) -> Coefficients {
+    pub fn coefficients(&self, wavelengths: &SampledWavelengths, range: &WavelengthRange) -> Coefficients {
         let (sigma_a, sigma_s) = (self.absorption.sample(wavelengths), self.scattering.sample(wavelengths));
-        let sigma_t = sigma_a + sigma_s;
+        let (mut sigma_t, zero) = (sigma_a + sigma_s, SampledSpectrum::ZERO);
+        let (mut strength, mut shift_rate) = (zero, zero);
+        if let Some(dyes) = &self.dyes {
+            sigma_t += dyes.absorption.sample(wavelengths);
+            strength = dyes.reradiation.strength(wavelengths, range);
+            shift_rate = strength.map(|strength| strength.min(dyes.most_events));
+        }
         let share = sigma_a / sigma_t.map(|x| if x > 0.0 { x } else { 1.0 });
-        Coefficients { sigma_s, sigma_t, glow: self.emission.sample(wavelengths) * share }
+        Coefficients { sigma_s, sigma_t, glow: self.emission.sample(wavelengths) * share, strength, shift_rate }
+    }
+
+    /// The wavelengths that dyes absorb where they emit the given ones; see [`ReradiationTable::shift`].
+    pub(crate) fn shift(
+        &self,
+        wavelengths: &SampledWavelengths,
+        range: &WavelengthRange,
+        u: f64,
+    ) -> SampledWavelengths {
+        self.dyes.as_ref().map_or(*wavelengths, |dyes| dyes.reradiation.shift(wavelengths, range, u))
     }
 }
 
@@ -72,8 +131,31 @@ impl Coefficients {
     /// Share of light left after a depth (the integral of density along the way, metres; may be infinite).
     #[inline]
     pub fn transmittance(&self, depth: f64) -> SampledSpectrum {
-        self.sigma_t.map(|sigma| if sigma > 0.0 { (-f64::from(sigma) * depth).exp() as f32 } else { 1.0 })
+        decayed(self.sigma_t, depth)
     }
+
+    /// Light is absorbed at most: the medium is no place of events.
+    #[inline]
+    pub fn has_no_events(&self) -> bool {
+        self.sigma_s.is_black() && self.shift_rate.is_black()
+    }
+
+    /// Events per metre at density 1. A medium that does not scatter has none where it absorbs.
+    #[inline]
+    pub fn event_rate(&self) -> SampledSpectrum {
+        if self.sigma_s.is_black() { self.shift_rate } else { self.sigma_t + self.shift_rate }
+    }
+
+    /// The probability that a path gets through a depth without an event.
+    #[inline]
+    pub fn no_event(&self, depth: f64) -> SampledSpectrum {
+        decayed(self.event_rate(), depth)
+    }
+}
+
+#[inline]
+fn decayed(rate: SampledSpectrum, depth: f64) -> SampledSpectrum {
+    rate.map(|rate| if rate > 0.0 { (-f64::from(rate) * depth).exp() as f32 } else { 1.0 })
 }
 
 impl Density {

@@ -76,7 +76,7 @@ const WAVELENGTHS: u32 = 1;
 /// Renders on the threads of the current rayon pool.
 pub fn path_trace(world: &World, camera: &Camera, settings: &PathTraceSettings, progress: &dyn Progress) -> Film {
     let mut film = Film::new(camera.resolution(), settings.crop, settings.bands, settings.polarised);
-    let trace = match (settings.polarised, world.needs_interiors()) {
+    let trace = match (settings.polarised, world.needs_volumes()) {
         (false, false) => trace_tile::<Unpolarised, false>,
         (false, true) => trace_tile::<Unpolarised, true>,
         (true, false) => trace_tile::<Polarised, false>,
@@ -97,7 +97,7 @@ pub fn path_trace(world: &World, camera: &Camera, settings: &PathTraceSettings, 
     film
 }
 
-/// `MEDIA`: paths know what fills the space around them.
+/// `MEDIA`: paths know what fills the space around them, and may change their wavelengths.
 fn trace_tile<P: Polarisation, const MEDIA: bool>(
     world: &World,
     camera: &Camera,
@@ -118,7 +118,10 @@ fn trace_tile<P: Polarisation, const MEDIA: bool>(
                 let horizontal = camera.horizontal(&ray);
                 let depth = settings.max_depth;
                 let light = if MEDIA {
-                    volume::incident_radiance::<P>(world, ray, horizontal, &wavelengths, &sampler, depth)
+                    {
+                        let range = distribution.range();
+                        volume::incident_radiance::<P>(world, ray, horizontal, &wavelengths, range, &sampler, depth)
+                    }
                 } else {
                     incident_radiance::<P>(world, ray, horizontal, &wavelengths, &sampler, depth)
                 };

@@ -1,6 +1,6 @@
-//! The path tracer of scenes with participating media and nested dielectrics.
+//! The path tracer of scenes with participating media, nested dielectrics and fluorescence.
 //!
-//! As the module `integrator`, with two differences. A path knows what fills the space around it, so that a wall is an
+//! As the module `integrator`, with three differences. A path knows what fills the space around it, so that a wall is an
 //! interface between what really lies on both sides, or none: walls without a bsdf, walls hidden in a solid of
 //! precedence, walls between equal matter. Paths and shadow rays go straight through those. And within a medium the
 //! distance to the next event is sampled: by the hero's extinction, in proportion to its transmittance.
@@ -9,10 +9,11 @@
 //! heuristic holds over wavelengths and techniques together (Miller, Georgiev and Jarosz 2019, "A null-scattering path
 //! integral formulation of light transport"): `path_pdf` is each wavelength's density of the path by scattering alone,
 //! `light_pdf` that of the same path with its last direction by light sampling, without that direction's density, both
-//! over the hero's density by scattering. Emission within a medium is integrated along each stretch, in closed form.
+//! over the hero's density by scattering. Where light fluoresces, all four wavelengths of the path change together (see
+//! [`arsc_spectral::ReradiationTable`]); which wavelengths the camera sees does not. Emission within a medium is integrated along each stretch, in closed form.
 
 use arsc_accel::{AreaSample, Hit, Ray};
-use arsc_spectral::{SampledSpectrum, SampledWavelengths};
+use arsc_spectral::{SampledSpectrum, SampledWavelengths, WavelengthRange};
 use glam::DVec3;
 
 use crate::bsdf::Bsdf;
@@ -21,6 +22,7 @@ use crate::integrator::{CAMERA_PAIRS, ROULETTE_DEPTH, ROULETTE_MAX};
 use crate::interiors::FillingId;
 use crate::light::Light;
 use crate::medium::Medium;
+use crate::phase::PhaseFunction;
 use crate::polarisation::{Mueller, Polarisation, Stokes};
 use crate::sampler::Sampler;
 use crate::world::{LightSource, World};
@@ -32,6 +34,8 @@ const LIGHT_POINT: u32 = 1;
 const DIRECTION: u32 = 2;
 const LOBE: u32 = 3;
 const DISTANCE: u32 = 4;
+/// Whether light fluoresces, and where from.
+const SHIFT: u32 = 5;
 
 /// Walls that a stretch between two events passes at most; beyond, it counts as dark.
 const MOST_WALLS: u32 = 10_000;
@@ -41,6 +45,8 @@ struct Path<P: Polarisation> {
     ray: Ray,
     /// What fills the space at the ray's origin.
     filling: FillingId,
+    /// Of the light that arrives at the ray's origin.
+    wavelengths: SampledWavelengths,
     /// Throughput at the hero's pdf, from light along the ray's reverse to the camera.
     beta: P::Mueller,
     path_pdf: SampledSpectrum,
@@ -63,16 +69,18 @@ impl<P: Polarisation> Path<P> {
         self.beta.apply(light) * (1.0 / mean)
     }
 
-    /// Goes through a depth of a medium without an event.
-    fn pass(&mut self, transmittance: SampledSpectrum, sampled: bool) {
-        if !sampled {
-            self.beta = self.beta * transmittance;
-            return;
-        }
-        let hero = 1.0 / transmittance.hero();
+    /// Goes through a medium without an event, which happens with the given probability.
+    fn pass(&mut self, transmittance: SampledSpectrum, probability: SampledSpectrum) {
+        let hero = 1.0 / probability.hero();
         self.beta = self.beta * (transmittance * hero);
-        self.path_pdf *= transmittance * hero;
+        self.path_pdf *= probability * hero;
         self.light_pdf *= hero;
+    }
+
+    /// One of several things happens: `weight` at the hero's probability, `path_pdf` each wavelength's over the hero's.
+    fn choose(&mut self, weight: SampledSpectrum, path_pdf: SampledSpectrum) {
+        self.beta = self.beta * weight;
+        self.path_pdf *= path_pdf;
     }
 
     /// Starts a new stretch.
@@ -138,19 +146,21 @@ struct LightSample<L> {
     probability: f64,
 }
 
-/// As [`crate::incident_radiance`], for any scene.
+/// As [`crate::incident_radiance`], for any scene. `range`: the wavelengths that there are.
 pub fn incident_radiance<P: Polarisation>(
     world: &World,
     ray: Ray,
     horizontal: DVec3,
     wavelengths: &SampledWavelengths,
+    range: &WavelengthRange,
     sampler: &Sampler,
     max_depth: u32,
 ) -> P::Stokes {
-    let mut tracer = Tracer { world, wavelengths, radiance: P::Stokes::unpolarised(SampledSpectrum::ZERO) };
+    let mut tracer = Tracer { world, range, radiance: P::Stokes::unpolarised(SampledSpectrum::ZERO) };
     let mut path = Path::<P> {
         ray,
         filling: world.interiors().at(&world.geometry, ray.origin),
+        wavelengths: *wavelengths,
         beta: P::Mueller::identity(horizontal, -ray.dir),
         path_pdf: SampledSpectrum::ONE,
         light_pdf: SampledSpectrum::ZERO,
@@ -164,7 +174,7 @@ pub fn incident_radiance<P: Polarisation>(
             Event::None => false,
             _ if depth == max_depth => false,
             Event::Surface(hit) => tracer.scatter_at_surface(&mut path, &hit, &draw),
-            Event::Volume(p, medium) => tracer.scatter_in_volume(&mut path, p, medium, &draw),
+            Event::Volume(p, phase) => tracer.scatter_in_volume(&mut path, p, &phase, &draw),
         };
         if !goes_on || (depth + 1 >= ROULETTE_DEPTH && !survives_roulette(&mut path, sampler.pair(pair + LOBE)[1])) {
             break;
@@ -206,28 +216,29 @@ impl Draw<'_> {
 }
 
 /// What ends a stretch.
-enum Event<'w> {
+enum Event {
     None,
     Surface(Hit),
-    Volume(DVec3, &'w Medium),
+    Volume(DVec3, PhaseFunction),
 }
 
 struct Tracer<'w, P: Polarisation> {
     world: &'w World,
-    wavelengths: &'w SampledWavelengths,
+    /// What is rendered: light that excites lies within.
+    range: &'w WavelengthRange,
     radiance: P::Stokes,
 }
 
 impl<'w, P: Polarisation> Tracer<'w, P> {
     /// Follows the path to where it is scattered next, through walls that are none, and adds the light met on the way.
-    fn next_event(&mut self, path: &mut Path<P>, draw: &Draw) -> Event<'w> {
+    fn next_event(&mut self, path: &mut Path<P>, draw: &Draw) -> Event {
         for wall in 0..MOST_WALLS {
             let hit = self.world.geometry.intersect(&path.ray);
             let t_max = hit.map_or(f64::INFINITY, |hit| hit.t);
             if let Some(medium) = self.world.medium(path.filling)
-                && let Some(t) = self.cross_medium(path, medium, t_max, draw.distance(wall))
+                && let Some((t, phase)) = self.cross_medium(path, medium, t_max, draw, wall)
             {
-                return Event::Volume(path.ray.at(t), medium);
+                return Event::Volume(path.ray.at(t), phase);
             }
             if !path.is_alive() {
                 return Event::None;
@@ -247,32 +258,47 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
         Event::None
     }
 
-    /// Through a medium to `t_max`, or to an event before it: its distance.
-    fn cross_medium(&mut self, path: &mut Path<P>, medium: &Medium, t_max: f64, u: f64) -> Option<f64> {
-        let coefficients = medium.coefficients(self.wavelengths);
+    /// Through a medium to `t_max`, or to an event before it: its distance, and how it scatters.
+    fn cross_medium(
+        &mut self,
+        path: &mut Path<P>,
+        medium: &Medium,
+        t_max: f64,
+        draw: &Draw,
+        wall: u32,
+    ) -> Option<(f64, PhaseFunction)> {
+        let coefficients = medium.coefficients(&path.wavelengths, self.range);
         let total = medium.density.depth(&path.ray, t_max);
         let transmittance = coefficients.transmittance(total);
         if !coefficients.glow.is_black() {
             let glow = coefficients.glow * (SampledSpectrum::ONE - transmittance);
             self.radiance += path.carry(&P::Stokes::unpolarised(glow), 0.0);
         }
-        if coefficients.sigma_s.is_black() {
-            path.pass(transmittance, false);
+        if coefficients.has_no_events() {
+            path.pass(transmittance, SampledSpectrum::ONE);
             return None;
         }
-        let hero = f64::from(coefficients.sigma_t.hero());
+        let rate = coefficients.event_rate();
+        let hero = f64::from(rate.hero());
         // Never for a hero that the medium does not see.
-        let depth = -(-u).ln_1p() / hero;
+        let depth = -(-draw.distance(wall)).ln_1p() / hero;
         let reached = if depth < total { medium.density.distance(&path.ray, depth, t_max) } else { None };
         let Some(t) = reached else {
-            path.pass(transmittance, true);
+            path.pass(transmittance, coefficients.no_event(total));
             return None;
         };
-        let transmittance = coefficients.transmittance(depth);
-        let density = 1.0 / (coefficients.sigma_t.hero() * transmittance.hero());
-        path.beta = path.beta * (coefficients.sigma_s * transmittance * density);
-        path.path_pdf *= coefficients.sigma_t * transmittance * density;
-        Some(t)
+        let (transmittance, passing) = (coefficients.transmittance(depth), coefficients.no_event(depth));
+        let [choice, shift] = if medium.fluoresces() { draw.pair(SHIFT) } else { [1.0, 0.0] };
+        let shift_rate = coefficients.shift_rate;
+        if choice * hero < f64::from(shift_rate.hero()) {
+            let density = 1.0 / (shift_rate.hero() * passing.hero());
+            path.choose(coefficients.strength * transmittance * density, shift_rate * passing * density);
+            path.wavelengths = medium.shift(&path.wavelengths, self.range, shift);
+            return Some((t, PhaseFunction::Isotropic));
+        }
+        let density = 1.0 / (coefficients.sigma_t.hero() * passing.hero());
+        path.choose(coefficients.sigma_s * transmittance * density, coefficients.sigma_t * passing * density);
+        Some((t, medium.phase))
     }
 
     /// What is beyond a wall that light goes straight through; `None` for a wall that does something.
@@ -294,14 +320,14 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
     fn add_environments(&mut self, path: &Path<P>) {
         let wi = path.ray.dir;
         for (environment, probability) in self.world.environments() {
-            let light = environment.radiance::<P>(wi, self.wavelengths);
+            let light = environment.radiance::<P>(wi, &path.wavelengths);
             self.radiance += path.carry(&light, probability * environment.pdf(wi));
         }
     }
 
     fn add_emitter(&mut self, path: &Path<P>, hit: &Hit) {
         let Some(emitter) = &self.world.material(hit).emitter else { return };
-        let light = emitter.radiance::<P>(-path.ray.dir, hit.ng, self.wavelengths);
+        let light = emitter.radiance::<P>(-path.ray.dir, hit.ng, &path.wavelengths);
         if light.intensity().is_black() {
             return;
         }
@@ -315,10 +341,9 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
         self.radiance += path.carry(&light, pdf);
     }
 
-    fn scatter_in_volume(&mut self, path: &mut Path<P>, p: DVec3, medium: &Medium, draw: &Draw) -> bool {
+    fn scatter_in_volume(&mut self, path: &mut Path<P>, p: DVec3, phase: &PhaseFunction, draw: &Draw) -> bool {
         let wo = -path.ray.dir;
-        let phase = &medium.phase;
-        if let Some(sample) = self.sample_light(&Vertex::Volume(p), draw) {
+        if let Some(sample) = self.sample_light(&Vertex::Volume(p), &path.wavelengths, draw) {
             let wi = sample.ray.dir;
             let pdf = SampledSpectrum::splat(phase.pdf(wo, wi) as f32);
             let value = phase.weight::<P>(wo, wi) * pdf;
@@ -332,7 +357,14 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
 
     fn scatter_at_surface(&mut self, path: &mut Path<P>, hit: &Hit, draw: &Draw) -> bool {
         let wo = -path.ray.dir;
-        let bsdf = &self.world.material(hit).bsdf;
+        let mut bsdf = &self.world.material(hit).bsdf;
+        if let Some(fluorescent) = bsdf.fluorescent() {
+            let [choice, shift] = draw.pair(SHIFT);
+            let event = fluorescent.choose(&path.wavelengths, self.range, choice, shift);
+            path.choose(event.weight, event.path_pdf);
+            path.wavelengths = event.shifted.unwrap_or(path.wavelengths);
+            bsdf = event.bsdf;
+        }
         let agree = wo.dot(hit.ng) * wo.dot(hit.ns) > 0.0;
         let normal = if agree { hit.ns } else { hit.ng };
         let frame = if bsdf.needs_tangent() {
@@ -344,20 +376,20 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
         let local_wo = frame.to_local(wo);
         let sides_agree = |wi: DVec3, local_wi: DVec3| wi.dot(hit.ng) * local_wi.z > 0.0;
         if !bsdf.is_specular()
-            && let Some(sample) = self.sample_light(&Vertex::Surface(hit), draw)
+            && let Some(sample) = self.sample_light(&Vertex::Surface(hit), &path.wavelengths, draw)
         {
             let (wi, local_wi) = (sample.ray.dir, frame.to_local(sample.ray.dir));
             if sides_agree(wi, local_wi) {
                 let value =
-                    bsdf.eval_between::<P>(relative, local_wo, local_wi, self.wavelengths) * local_wi.z.abs() as f32;
-                let pdf = bsdf.pdf_between(relative, local_wo, local_wi, self.wavelengths);
+                    bsdf.eval_between::<P>(relative, local_wo, local_wi, &path.wavelengths) * local_wi.z.abs() as f32;
+                let pdf = bsdf.pdf_between(relative, local_wo, local_wi, &path.wavelengths);
                 let reflected = wi.dot(hit.ng) * wo.dot(hit.ng) > 0.0;
                 let filling = if reflected { path.filling } else { self.beyond(hit, wi) };
                 self.add_direct(path, &sample, value.to_world(&frame), pdf, filling);
             }
         }
         let (u, u_lobe) = (draw.pair(DIRECTION), draw.pair(LOBE)[0]);
-        let sample = bsdf.sample_between::<P>(relative, local_wo, u, u_lobe, self.wavelengths);
+        let sample = bsdf.sample_between::<P>(relative, local_wo, u, u_lobe, &path.wavelengths);
         let Some(sample) = sample else { return false };
         let wi = frame.to_world(sample.wi);
         if !sides_agree(wi, sample.wi) {
@@ -382,7 +414,7 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
         let dir = path.ray.dir;
         let beyond = self.beyond(hit, dir);
         let sides = if dir.dot(hit.ng) < 0.0 { [path.filling, beyond] } else { [beyond, path.filling] };
-        self.world.interiors().relative_index(&self.world.geometry, hit, sides, self.wavelengths)
+        self.world.interiors().relative_index(&self.world.geometry, hit, sides, &path.wavelengths)
     }
 
     /// Adds the light of a source: `value` is what the vertex makes of it (with the cosine), `pdf` the densities of its
@@ -398,7 +430,9 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
         if value.intensity().is_black() || sample.light.intensity().is_black() {
             return;
         }
-        let Some((transmittance, passing)) = self.transmittance(&sample.ray, filling) else { return };
+        let Some((transmittance, passing)) = self.transmittance(&sample.ray, &path.wavelengths, filling) else {
+            return;
+        };
         let (weight, competing) = match sample.pdf {
             None => (1.0 / sample.probability, SampledSpectrum::ZERO),
             Some(light_pdf) => (1.0 / light_pdf, pdf * (1.0 / light_pdf) as f32),
@@ -416,18 +450,23 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
 
     /// Share of light that gets along a segment, and each wavelength's probability that a path gets along it without an
     /// event. `None` if something is in the way.
-    fn transmittance(&self, ray: &Ray, mut filling: FillingId) -> Option<(SampledSpectrum, SampledSpectrum)> {
+    fn transmittance(
+        &self,
+        ray: &Ray,
+        wavelengths: &SampledWavelengths,
+        mut filling: FillingId,
+    ) -> Option<(SampledSpectrum, SampledSpectrum)> {
         let mut ray = *ray;
         let (mut transmittance, mut passing) = (SampledSpectrum::ONE, SampledSpectrum::ONE);
         for _ in 0..MOST_WALLS {
             let hit = self.world.geometry.intersect(&ray);
             if let Some(medium) = self.world.medium(filling) {
-                let coefficients = medium.coefficients(self.wavelengths);
+                let coefficients = medium.coefficients(wavelengths, self.range);
                 let t = hit.map_or(ray.t_max, |hit| hit.t);
-                let share = coefficients.transmittance(medium.density.depth(&ray, t));
-                transmittance *= share;
-                if !coefficients.sigma_s.is_black() {
-                    passing *= share;
+                let depth = medium.density.depth(&ray, t);
+                transmittance *= coefficients.transmittance(depth);
+                if !coefficients.has_no_events() {
+                    passing *= coefficients.no_event(depth);
                 }
                 if transmittance.is_black() {
                     return None;
@@ -442,7 +481,12 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
         None
     }
 
-    fn sample_light(&self, vertex: &Vertex, draw: &Draw) -> Option<LightSample<P::Stokes>> {
+    fn sample_light(
+        &self,
+        vertex: &Vertex,
+        wavelengths: &SampledWavelengths,
+        draw: &Draw,
+    ) -> Option<LightSample<P::Stokes>> {
         let (source, probability, rest) = self.world.choose_light(draw.pair(LIGHT_CHOICE)[0])?;
         let u = draw.pair(LIGHT_POINT);
         let (ray, light, pdf) = match source {
@@ -451,7 +495,7 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
                 let to_light = sample.p - vertex.p();
                 let distance2 = to_light.length_squared();
                 let wi = to_light / distance2.sqrt();
-                let radiance = self.world.emitter(sample.material.0)?.radiance::<P>(-wi, sample.ng, self.wavelengths);
+                let radiance = self.world.emitter(sample.material.0)?.radiance::<P>(-wi, sample.ng, wavelengths);
                 let pdf = probability * sample.pdf_area * distance2 / wi.dot(sample.ng).abs();
                 (vertex.segment_to(&sample)?, radiance, Some(pdf))
             }
@@ -459,14 +503,14 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
                 let (ray, irradiance) = match self.world.light(index) {
                     Light::Point(point) => {
                         let distance2 = (point.position - vertex.p()).length_squared();
-                        (vertex.segment_to_point(point.position)?, point.irradiance(distance2, self.wavelengths))
+                        (vertex.segment_to_point(point.position)?, point.irradiance(distance2, wavelengths))
                     }
-                    Light::Distant(distant) => (vertex.spawn(distant.wi), distant.irradiance(self.wavelengths)),
+                    Light::Distant(distant) => (vertex.spawn(distant.wi), distant.irradiance(wavelengths)),
                 };
                 (ray, P::Stokes::unpolarised(irradiance), None)
             }
             LightSource::Environment(index) => {
-                let sample = self.world.environment(index).sample::<P>(u, self.wavelengths)?;
+                let sample = self.world.environment(index).sample::<P>(u, wavelengths)?;
                 (vertex.spawn(sample.wi), sample.radiance, Some(probability * sample.pdf))
             }
         };

@@ -61,6 +61,8 @@ pub struct World {
     environment_probability: Vec<f64>,
     media: Vec<Medium>,
     interiors: Interiors,
+    /// Some surface changes the wavelength of light.
+    fluoresces: bool,
 }
 
 impl World {
@@ -82,9 +84,11 @@ impl World {
         let needed = geometry.parts().iter().enumerate().filter_map(shown).max().unwrap_or(0);
         materials.resize_with(materials.len().max(needed), Material::default);
         let interiors = Interiors::new(&geometry, &materials, media.atmosphere);
+        let fluoresces = materials.iter().any(|material| material.bsdf.fluorescent().is_some());
         let mut world = World {
             media: media.media,
             interiors,
+            fluoresces,
             part_probability: vec![0.0; geometry.parts().len()],
             environment_probability: vec![0.0; environments.len()],
             geometry,
@@ -95,8 +99,19 @@ impl World {
             powers: Vec::new(),
             choice: AliasTable::default(),
         };
+        world.limit_events();
         world.weigh_lights(&WavelengthRange::VISIBLE);
         world
+    }
+
+    /// Tells media how large is what they fill; endless space counts as large as what stands in it.
+    fn limit_events(&mut self) {
+        let scene = 2.0 * self.scene_radius();
+        for (medium, extent) in self.interiors.extents() {
+            if let Some(medium) = self.media.get_mut(medium as usize) {
+                medium.fills(if extent.is_finite() { extent } else { scene });
+            }
+        }
     }
 
     /// Chooses lights by their power over the wavelengths that a render samples; before, it is that over the visible
@@ -182,9 +197,9 @@ impl World {
         self.sources.iter().copied().zip(self.powers.iter().copied())
     }
 
-    /// Media and nested dielectrics: paths have to know what fills the space around them.
-    pub(crate) fn needs_interiors(&self) -> bool {
-        self.interiors.matters()
+    /// Media and nested dielectrics, so that paths have to know what fills the space around them; fluorescence.
+    pub(crate) fn needs_volumes(&self) -> bool {
+        self.interiors.matters() || self.fluoresces
     }
 
     pub(crate) fn interiors(&self) -> &Interiors {

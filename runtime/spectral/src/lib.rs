@@ -13,6 +13,8 @@ mod eval;
 mod observer;
 mod planck;
 mod range;
+mod reradiation;
+mod reradiation_table;
 mod sampled;
 pub mod sky;
 mod sky_lanes;
@@ -28,6 +30,8 @@ pub use observer::{
 };
 pub use planck::planck;
 pub use range::{KNOTS, TABLE_MAX_NM, TABLE_MIN_NM, WavelengthRange};
+pub use reradiation::{DonaldsonMatrix, Dye, Fluorescence, Reradiation};
+pub use reradiation_table::ReradiationTable;
 pub use sampled::SampledSpectrum;
 pub use sky_lanes::SkyLanes;
 pub use spectrum::Spectrum;

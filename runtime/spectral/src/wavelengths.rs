@@ -112,6 +112,13 @@ impl SampledWavelengths {
         }
     }
 
+    /// Other wavelengths in place of these, for a path that goes on with them. The densities stay those of the wavelengths
+    /// that the path began with.
+    #[inline]
+    pub(crate) fn shifted(&self, lambda_nm: Vec4) -> SampledWavelengths {
+        SampledWavelengths { lambda_nm, pdf: self.pdf, knots: lambda_nm.to_array().map(nearest_knot) }
+    }
+
     /// Indices of the nearest entries of tables with the knots of [`crate::KNOTS`].
     #[inline]
     pub fn knots(&self) -> [usize; 4] {

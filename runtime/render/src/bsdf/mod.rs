@@ -13,6 +13,7 @@
 
 mod conductor;
 mod dielectric;
+mod fluorescent;
 mod lambert;
 mod microfacets;
 mod mirror;
@@ -23,13 +24,14 @@ mod rough_dielectric;
 mod sheet;
 mod thin_dielectric;
 
-use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{DenseSpectrum, Reradiation, SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 
 use crate::polarisation::{DiattenuatingRetarder, Mueller, Polarisation, s_axis};
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
+pub use fluorescent::{Fluorescent, FluorescentEvent};
 pub use lambert::Lambert;
 pub use microfacets::{MicrofacetShape, Microfacets};
 pub use mirror::Mirror;
@@ -53,6 +55,8 @@ pub enum Bsdf {
     RoughConductor(RoughConductor),
     RoughDielectric(RoughDielectric),
     Sheet(Sheet),
+    /// Diffuse; as a bsdf what keeps its wavelength, see [`Bsdf::fluorescent`] for the rest.
+    Fluorescent(Box<Fluorescent>),
     /// No interface: light goes straight on.
     Inert,
 }
@@ -136,6 +140,20 @@ impl Bsdf {
         Bsdf::Sheet(Sheet::depolariser(transmittance))
     }
 
+    /// Diffuse reflection and re-radiation; `sigma` as for [`Bsdf::oren_nayar`], 0 for Lambert's law.
+    pub fn reradiating(reradiation: &Reradiation, sigma: f64) -> Bsdf {
+        Bsdf::Fluorescent(Box::new(Fluorescent::new(reradiation, sigma)))
+    }
+
+    /// What changes the wavelength of light.
+    #[inline]
+    pub fn fluorescent(&self) -> Option<&Fluorescent> {
+        match self {
+            Bsdf::Fluorescent(fluorescent) => Some(fluorescent),
+            _ => None,
+        }
+    }
+
     /// Every lobe is a Dirac distribution: light sampling is of no use.
     #[inline]
     pub fn is_specular(&self) -> bool {
@@ -144,7 +162,8 @@ impl Bsdf {
             | Bsdf::OrenNayar(_)
             | Bsdf::Phong(_)
             | Bsdf::RoughConductor(_)
-            | Bsdf::RoughDielectric(_) => false,
+            | Bsdf::RoughDielectric(_)
+            | Bsdf::Fluorescent(_) => false,
             Bsdf::Mirror(_)
             | Bsdf::Dielectric(_)
             | Bsdf::Conductor(_)
@@ -200,6 +219,7 @@ impl Bsdf {
         wavelengths: &SampledWavelengths,
     ) -> P::Mueller {
         let depolarised = match self {
+            Bsdf::Fluorescent(both) => return both.elastic().eval::<P>(wo, wi, wavelengths),
             Bsdf::RoughConductor(rough) => return rough.eval::<P>(wo, wi, wavelengths),
             Bsdf::RoughDielectric(rough) => return rough.eval::<P>(wo, wi, rough.ior(relative, wavelengths)),
             Bsdf::Lambert(lambert) => lambert.eval(wo, wi, wavelengths),
@@ -221,7 +241,7 @@ impl Bsdf {
     ) -> SampledSpectrum {
         let same = |pdf: f64| SampledSpectrum::splat(pdf as f32);
         match self {
-            Bsdf::Lambert(_) | Bsdf::OrenNayar(_) => same(cosine_pdf(wo, wi)),
+            Bsdf::Lambert(_) | Bsdf::OrenNayar(_) | Bsdf::Fluorescent(_) => same(cosine_pdf(wo, wi)),
             Bsdf::Phong(phong) => same(phong.pdf(wo, wi)),
             Bsdf::RoughConductor(rough) => same(rough.pdf(wo, wi)),
             Bsdf::RoughDielectric(rough) => rough.pdf(wo, wi, rough.ior(relative, wavelengths)),
@@ -253,6 +273,7 @@ impl Bsdf {
             Bsdf::RoughConductor(rough) => rough.sample(wo, u, wavelengths),
             Bsdf::RoughDielectric(rough) => rough.sample(wo, u, u_lobe, rough.ior(relative, wavelengths)),
             Bsdf::Sheet(sheet) => sheet.sample(wo, wavelengths),
+            Bsdf::Fluorescent(both) => both.elastic().sample(wo, u, u_lobe, wavelengths),
             Bsdf::Inert => Some(BsdfSample::straight_on(wo)),
         }
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use arsc_spectral::{SampledSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{Dye, Fluorescence, Reradiation, SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 use rand::Rng;
 
@@ -170,6 +170,16 @@ fn lambert() {
 fn oren_nayar() {
     for sigma in [0.0, 0.2, 0.5, 1.2] {
         assert_conforms(&Bsdf::oren_nayar(&constant(1.0), sigma));
+    }
+}
+
+/// What keeps its wavelength.
+#[test]
+fn fluorescent() {
+    let dye = Dye { absorption: constant(0.5), emission: constant(1.0), quantum_yield: 1.0 };
+    let reradiation = Reradiation { reflectance: constant(0.5), fluorescence: Fluorescence::Dye(dye) };
+    for sigma in [0.0, 0.5] {
+        assert_conforms(&Bsdf::reradiating(&reradiation, sigma));
     }
 }
 
