@@ -4,7 +4,8 @@
 //! into gaps. In the middle of each gap every leaf is asked in higher precision whether it holds the point, and the
 //! tree is evaluated. Each strategy must then be inside or outside of each solid as the gap says; its nearest hit must be
 //! where the first gap begins that differs from the start; occlusion must follow from that; and the hit must belong to the leaf that
-//! the rule of docs/csg.md names from the states on both sides, with its normal against or along the ray.
+//! the rule of docs/csg.md names from the states on both sides, with its normal against or along the ray, lie on the face
+//! it names, and show that face's material.
 //!
 //! **What is excused**, beforehand: a gap whose middle is *near*, that is within [`NEAR`] tolerances of the boundary of a leaf
 //! on which the value there depends. The tolerance of a solid is 2⁻⁴⁰ of its largest coordinate, or what its leaves'
@@ -28,7 +29,7 @@ mod scenes;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use arsc_accel::{BuildOptions, Csg, Hit, Interval, PartId, PartKind, Ray, Scene, Strategy};
+use arsc_accel::{BuildOptions, Csg, FaceMaterial, Hit, Interval, PartId, PartKind, Ray, Scene, Strategy};
 use arsc_geometry::Placed;
 use glam::{DAffine3, DVec3};
 use membership::{Answer, Leaf, eval};
@@ -38,6 +39,9 @@ use scenes::Case;
 
 /// What counts as near a boundary, in tolerances.
 const NEAR: f64 = 4.0;
+/// How far a hit may be from its face, in object space, where sizes are about one; other faces are a tenth away or more but
+/// at edges.
+const OFF_FACE: f64 = 1e-6;
 /// Gaps excused, of all.
 const MOST_EXCUSED: f64 = 0.02;
 
@@ -196,6 +200,7 @@ fn leaf_of(scene: &Scene, part: PartId) -> (usize, u32) {
 
 struct Trial<'a> {
     bodies: &'a [Body],
+    painted: &'a [FaceMaterial],
     scene: &'a Scene,
     ray: &'a Ray,
     /// By body.
@@ -238,8 +243,13 @@ impl Trial<'_> {
         if leaf != expected {
             return Some(format!("solid {solid} at {}: leaf {leaf} instead of {expected}", hit.t));
         }
-        if hit.material != self.scene.parts()[hit.part.0 as usize].material {
-            return Some(format!("material {:?} is not the part's", hit.material));
+        let base = self.scene.parts()[hit.part.0 as usize].material;
+        let painted = self.painted.iter().find(|painted| (painted.base, painted.face) == (base, hit.face));
+        if hit.material != painted.map_or(base, |painted| painted.material) {
+            return Some(format!("material {:?} is not that of face {}", hit.material, hit.face));
+        }
+        if body.leaves[leaf as usize].off_face(hit.face, hit.p).is_some_and(|off| off > OFF_FACE) {
+            return Some(format!("{} is not on face {}", hit.p, hit.face));
         }
         // The sine at which a ray may graze a surface whose normal is taken at a point that is off by the tolerance.
         let cosine = hit.ng.dot(self.ray.dir);
@@ -301,7 +311,7 @@ fn check(seed: u64, rays: usize) -> Tally {
         tally.gaps += gaps.iter().map(|gaps| gaps.len() as u64).sum::<u64>();
         tally.excused += gaps.iter().flatten().filter(|gap| gap.inside.is_none()).count() as u64;
         for ((strategy, scene), intervals) in Strategy::ALL.iter().zip(&built).zip(&found) {
-            let trial = Trial { bodies: &bodies, scene, ray: &ray, gaps: &gaps };
+            let trial = Trial { bodies: &bodies, painted: &case.geometry.faces, scene, ray: &ray, gaps: &gaps };
             if let Some(wrong) = trial.check(intervals, t_max, &mut tally) {
                 tally.unexplained.push(format!("seed {seed}, ray {number} {ray:?}, {strategy:?}: {wrong}"));
             }

@@ -1,9 +1,9 @@
 //! Signed distances to solids that are no low polynomials, from their definitions: the winding number of a mesh (van Oosterom and
-//! Strackee 1983), the supporting planes of a point set, the even-odd rule in a polygon, the monotone sum of
-//! powers of a superellipsoid. Plain doubles: their rounding is a
+//! Strackee 1983), the supporting planes of a point set, the even-odd rule in a polygon and in a profile of lines or splines
+//! (Catmull and Rom 1974), the monotone sum of powers of a superellipsoid. Plain doubles: their rounding is a
 //! thousandth of the tolerances that answers are compared with.
 
-use arsc_geometry::{DVec2, Polyhedron, Prism, Superquadric, TriangleMesh};
+use arsc_geometry::{DVec2, Lathe, Polyhedron, Prism, Superquadric, TriangleMesh};
 use glam::DVec3;
 
 /// Distance from a triangle.
@@ -81,6 +81,94 @@ pub fn prism(prism: &Prism, p: DVec3) -> f64 {
     }
     let side = if inside { -nearest } else { nearest };
     side.max(-p.z).max(p.z - prism.height())
+}
+
+/// A stretch of a profile: a cubic by its values and slopes at both ends (Hermite).
+struct Stretch {
+    ends: [DVec2; 2],
+    slopes: [DVec2; 2],
+}
+
+impl Stretch {
+    fn at(&self, s: f64) -> DVec2 {
+        let ([a, b], [m, n]) = (self.ends, self.slopes);
+        let (s2, s3) = (s * s, s * s * s);
+        a * (2.0 * s3 - 3.0 * s2 + 1.0) + m * (s3 - 2.0 * s2 + s) + b * (3.0 * s2 - 2.0 * s3) + n * (s3 - s2)
+    }
+
+    /// The parts between 64 places, by their ends.
+    fn parts() -> impl Iterator<Item = (f64, f64)> {
+        (0..64).map(|i| (f64::from(i) / 64.0, f64::from(i + 1) / 64.0))
+    }
+
+    /// How often a line from `p` to greater radii crosses it. Parts are taken to be monotone in height.
+    fn crossings(&self, p: DVec2) -> usize {
+        let beyond = |(mut low, mut high): (f64, f64)| {
+            let (above, below) = (self.at(low).y > p.y, self.at(high).y > p.y);
+            if above == below {
+                return false;
+            }
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if (self.at(middle).y > p.y) == above { low = middle } else { high = middle }
+            }
+            self.at(low).x > p.x
+        };
+        Stretch::parts().filter(|&part| beyond(part)).count()
+    }
+
+    /// Distance by ternary search near the nearest of the places.
+    fn distance(&self, p: DVec2) -> f64 {
+        let far = |s: f64| self.at(s).distance_squared(p);
+        let nearest = Stretch::parts().map(|part| part.0).chain([1.0]).min_by(|a, b| far(*a).total_cmp(&far(*b)));
+        let nearest = nearest.unwrap_or(0.0);
+        let (mut low, mut high) = ((nearest - 1.0 / 64.0).max(0.0), (nearest + 1.0 / 64.0).min(1.0));
+        while high - low > 1e-9 {
+            let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+            if far(a) < far(b) { high = b } else { low = a }
+        }
+        // The tangent there is as near as the curve: a minimum of a square is found to half of the digits only.
+        let (at, ahead) = (self.at(low), self.at(high + 1e-4) - self.at(low - 1e-4));
+        if low > 1e-6 && high < 1.0 - 1e-6 { (ahead.perp_dot(p - at) / ahead.length()).abs() } else { far(low).sqrt() }
+    }
+}
+
+/// The stretches of a profile; at an open end on the axis a smooth one goes across it.
+fn stretches(lathe: &Lathe) -> Vec<Stretch> {
+    let points = lathe.points();
+    let n = points.len();
+    let slope = |i: usize| {
+        let neighbour = |step: usize| points[(i + step) % n];
+        match i {
+            _ if lathe.is_closed() || (i > 0 && i + 1 < n) => 0.5 * (neighbour(1) - neighbour(n - 1)),
+            0 if points[0].x == 0.0 => DVec2::new(points[1].x, 0.0),
+            0 => points[1] - points[0],
+            _ if points[i].x == 0.0 => DVec2::new(-points[i - 1].x, 0.0),
+            _ => points[i] - points[i - 1],
+        }
+    };
+    let stretch = |i: usize| {
+        let (a, b) = (points[i], points[(i + 1) % n]);
+        let slopes = if lathe.is_smooth() { [slope(i), slope((i + 1) % n)] } else { [b - a, b - a] };
+        Stretch { ends: [a, b], slopes }
+    };
+    let mut all: Vec<Stretch> = (0..if lathe.is_closed() { n } else { n - 1 }).map(stretch).collect();
+    if !lathe.is_closed() {
+        let cap = |p: DVec2| {
+            let foot = DVec2::new(0.0, p.y);
+            Stretch { ends: [p, foot], slopes: [foot - p, foot - p] }
+        };
+        all.extend([cap(points[0]), cap(points[n - 1])]);
+    }
+    all
+}
+
+pub fn lathe(lathe: &Lathe, p: DVec3) -> f64 {
+    let flat = DVec2::new(p.truncate().length(), p.z);
+    let all = stretches(lathe);
+    let crossings: usize = all.iter().map(|stretch| stretch.crossings(flat)).sum();
+    let nearest = all.iter().map(|stretch| stretch.distance(flat)).fold(f64::INFINITY, f64::min);
+    if crossings % 2 == 1 { -nearest } else { nearest }
 }
 
 /// Whether a point is in a superellipsoid; open when one at most `near` away may not be. The sum of powers grows with every

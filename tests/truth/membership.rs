@@ -98,6 +98,43 @@ impl Leaf {
         pinched && self.quick.transform_point3(p).abs().min_element() < 1e-6
     }
 
+    /// How far a point is from the surface that a face is part of, in object space; `None` where faces are no simple matter.
+    pub fn off_face(&self, face: u32, p: DVec3) -> Option<f64> {
+        let p = self.quick.transform_point3(p);
+        let end = |low: f64, high: f64, side: f64| match face {
+            0 => side,
+            1 => p.z - low,
+            _ => p.z - high,
+        };
+        let ring = p.truncate().length();
+        Some(
+            match self.shape {
+                Shape::Box { min, max } => {
+                    let axis = face as usize / 2;
+                    p[axis] - if face.is_multiple_of(2) { min[axis] } else { max[axis] }
+                }
+                Shape::Cylinder { radius, height } => end(0.0, height, ring - radius),
+                Shape::Cone { base_radius, top_radius, height } => {
+                    end(0.0, height, ring - base_radius - (top_radius - base_radius) * p.z / height)
+                }
+                Shape::Paraboloid(Paraboloid { radius, height }) => {
+                    end(0.0, height, ring.powi(2) / radius.powi(2) - p.z / height)
+                }
+                Shape::Hyperboloid(Hyperboloid { radius, slope, half_height, two_sheets }) => {
+                    let offset = if two_sheets { -radius * radius } else { radius * radius };
+                    end(-half_height, half_height, ring.powi(2) - (slope * p.z).powi(2) - offset)
+                }
+                Shape::Mesh(ref mesh) => {
+                    let [a, b, c] = mesh.mesh().corners(face as usize);
+                    (b - a).cross(c - a).normalize().dot(p - a)
+                }
+                Shape::Prism(ref prism) if face < 2 => p.z - if face == 0 { 0.0 } else { prism.height() },
+                _ => return None,
+            }
+            .abs(),
+        )
+    }
+
     pub fn value(&self, p: &V) -> Dd {
         value(&self.shape, &self.rows.map(|(row, shift)| dot(&row, p) + shift))
     }
@@ -150,8 +187,8 @@ fn value<N: Number>(shape: &Shape, p: &[N; 3]) -> N {
         Shape::Mesh(ref mesh) => N::from(flat::mesh(mesh.mesh(), plain(p))),
         Shape::Polyhedron(ref polyhedron) => N::from(flat::polyhedron(polyhedron, plain(p))),
         Shape::Prism(ref prism) => N::from(flat::prism(prism, plain(p))),
-        #[allow(unreachable_patterns)]
-        ref other => panic!("no membership for {other:?}"),
+        Shape::Lathe(ref lathe) => N::from(flat::lathe(lathe, plain(p))),
+        Shape::Superquadric(_) => unreachable!("has an answer of its own"),
     }
 }
 

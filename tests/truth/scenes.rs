@@ -7,9 +7,9 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use arsc_accel::{Csg, CsgLeaf, Instance, MaterialIndex, Ray, SceneGeometry, Shape, Solid};
+use arsc_accel::{Csg, CsgLeaf, FaceMaterial, Instance, MaterialIndex, Ray, SceneGeometry, Shape, Solid};
 use arsc_geometry::{
-    Aabb, ClosedMesh, DVec2, Hyperboloid, Paraboloid, Placed, Polygon, Polyhedron, Prism, Superquadric,
+    Aabb, ClosedMesh, DVec2, Hyperboloid, Lathe, Paraboloid, Placed, Polygon, Polyhedron, Prism, Superquadric,
 };
 use glam::{DAffine3, DMat3, DVec3};
 use rand::Rng;
@@ -25,6 +25,9 @@ pub struct Case {
     pub scales: Vec<f64>,
 }
 
+/// Materials from here on are those of single faces.
+const OWN_FACES: u32 = 10_000;
+
 pub fn vector(rng: &mut Pcg64, reach: f64) -> DVec3 {
     DVec3::from_array(std::array::from_fn(|_| rng.random_range(-reach..reach)))
 }
@@ -36,7 +39,7 @@ fn lattice(rng: &mut Pcg64, reach: i32) -> DVec3 {
 
 /// Every kind of shape from three sizes.
 fn shape(rng: &mut Pcg64, a: f64, b: f64, c: f64) -> Shape {
-    match rng.random_range(0..33) {
+    match rng.random_range(0..36) {
         0..5 => Shape::Sphere { radius: a },
         5..9 => Shape::Box { min: DVec3::new(-a, -b, -c), max: DVec3::new(b, c, a) },
         9..12 => Shape::Cylinder { radius: 0.5 * a, height: 2.0 * b },
@@ -50,6 +53,7 @@ fn shape(rng: &mut Pcg64, a: f64, b: f64, c: f64) -> Shape {
         26..28 => prism(a, b, c),
         28..30 => polyhedron(a, b, c),
         30 => superquadric(a, b, c),
+        31..34 => lathe(a, b, c),
         _ => mesh(a, b, c),
     }
 }
@@ -73,6 +77,18 @@ fn polyhedron(a: f64, b: f64, c: f64) -> Shape {
     let (x, y, z) = (DVec3::X * a, DVec3::Y * b, DVec3::Z * c);
     let points = if a < b { vec![x, -x, y, -y, z, -z] } else { vec![-x, x, -x + y, x + y, -x + z, x + z] };
     Shape::Polyhedron(Arc::new(Polyhedron::new(points).expect("a hull")))
+}
+
+/// A vase, a ring, or a spline of either.
+fn lathe(a: f64, b: f64, c: f64) -> Shape {
+    let at = DVec2::new;
+    let closed = b < c;
+    let points = if closed {
+        vec![at(a, -b), at(a + c, 0.0), at(a, b), at(a + 0.25 * c, 0.0)]
+    } else {
+        vec![at(0.5 * a, -c), at(a, 0.0), at(0.5 * a, 0.5 * b), at(b, b), at(0.0, b + 0.5 * c)]
+    };
+    Shape::Lathe(Arc::new(Lathe::new(points, closed, a < c).expect("a profile")))
 }
 
 /// Round, box-like and pinched ones.
@@ -153,6 +169,23 @@ fn solid(rng: &mut Pcg64, size: usize, hostile: bool, outer: DAffine3, materials
 }
 
 pub fn case(seed: u64, rng: &mut Pcg64) -> Case {
+    let mut case = plain_case(seed, rng);
+    paint_faces(&mut case.geometry);
+    case
+}
+
+/// Two of the faces of every other leaf show a material of their own.
+fn paint_faces(geometry: &mut SceneGeometry) {
+    let leaves = geometry.solids.iter().flat_map(|solid| &solid.leaves);
+    let leaves = leaves.chain(geometry.instances.iter().flat_map(|instance| &instance.solid.leaves));
+    for leaf in leaves.filter(|leaf| leaf.material.0 % 2 == 0 && leaf.shape.face_count() > 2) {
+        let own = |face: u32| MaterialIndex(OWN_FACES + 2 * leaf.material.0 + face % 2);
+        let paint = |face| FaceMaterial { base: leaf.material, face, material: own(face) };
+        geometry.faces.extend([1, 2].map(paint));
+    }
+}
+
+fn plain_case(seed: u64, rng: &mut Pcg64) -> Case {
     let mut materials = 0;
     let scaled = |scale: f64| DAffine3::from_scale(DVec3::splat(scale));
     let mut geometry = SceneGeometry::default();

@@ -30,6 +30,8 @@ pub(crate) struct Line {
     high: f64,
     /// Shorter intervals are not cut.
     shortest: f64,
+    /// Less is rounding of ρ − r: where a line runs in the surface, sides are told at the ends of the stretch alone.
+    rounding: f64,
 }
 
 /// A point of the line: ρ − r and the slopes of both by t.
@@ -52,14 +54,15 @@ impl Line {
     pub(crate) fn new(o: DVec3, d: DVec3, greatest: f64) -> Option<Line> {
         let flat = d.truncate().length_squared();
         let shortest = 1e-13 * greatest;
+        let rounding = 16.0 * f64::EPSILON * (greatest + o.length());
         if flat == 0.0 {
-            return Some(Line { o, d, low: f64::NEG_INFINITY, high: f64::INFINITY, shortest });
+            return Some(Line { o, d, low: f64::NEG_INFINITY, high: f64::INFINITY, shortest, rounding });
         }
         let middle = -o.truncate().dot(d.truncate()) / flat;
         let closest = (o + d * middle).truncate().length();
         let greatest = greatest * (1.0 + 1e-9);
         let reach = ((greatest - closest).max(0.0) * (greatest + closest) / flat).sqrt();
-        (closest < greatest).then_some(Line { o, d, low: middle - reach, high: middle + reach, shortest })
+        (closest < greatest).then_some(Line { o, d, low: middle - reach, high: middle + reach, shortest, rounding })
     }
 
     pub(crate) fn rho(&self, t: f64) -> f64 {
@@ -164,13 +167,16 @@ impl Line {
             let least = a.rho_rate - a.r_rate.max(b.r_rate);
             let most = b.rho_rate - a.r_rate.min(b.r_rate);
             let differ = a.is_outside() != b.is_outside();
-            if least > 0.0 || most < 0.0 || b.t - a.t <= self.shortest {
+            let width = b.t - a.t;
+            let largest = a.gap.abs().min(b.gap.abs()) + width * most.max(-least);
+            let is_flat = largest <= self.rounding + 4.0 * f64::EPSILON * a.t.abs().max(b.t.abs());
+            if least > 0.0 || most < 0.0 || width <= self.shortest || is_flat {
                 if differ {
                     found(self.root(piece, a, b), piece.face);
                 }
                 continue;
             }
-            if !differ && stays(a.gap, b.gap, least, most, b.t - a.t) {
+            if !differ && stays(a.gap, b.gap, least, most, width) {
                 continue;
             }
             let middle = self.node(piece, 0.5 * (a.t + b.t));
@@ -208,8 +214,8 @@ fn stays(a: f64, b: f64, least: f64, most: f64, width: f64) -> bool {
     if !(fall.is_finite() && rise.is_finite()) {
         return false;
     }
-    let x = (a - b + rise * width) / (rise - fall);
-    a + fall * x > 0.0
+    let x = if rise > fall { ((a - b + rise * width) / (rise - fall)).clamp(0.0, width) } else { 0.0 };
+    (a + fall * x).max(b - rise * (width - x)) > 0.0
 }
 
 impl Piece {

@@ -403,3 +403,27 @@ fn bad_input_is_an_error() {
     assert!(Placed::new(unit.clone(), DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0))).is_err());
     assert!(Placed::new(unit, DAffine3::from_translation(DVec3::splat(f64::INFINITY))).is_err());
 }
+
+/// Lines along the walls of a solid of revolution: beside them, in them, through them.
+#[test]
+fn lines_along_the_walls_of_a_lathe() {
+    let shape = lathe(&[(0.5, 0.25), (0.5, 0.5), (1.0, 1.0), (0.0, 2.0)], false, false);
+    let along = |p: DVec3, d: DVec3| {
+        let crossings = shape.crossings(p, d.normalize());
+        let places = crossings.t().iter().map(|t| p + d.normalize() * *t);
+        places.map(|p| (p.truncate().length(), p.z)).collect::<Vec<_>>()
+    };
+    let near = |found: Vec<(f64, f64)>, expected: &[(f64, f64)]| {
+        let close = |(a, b): (&(f64, f64), &(f64, f64))| (a.0 - b.0).abs().max((a.1 - b.1).abs()) < 1e-12;
+        assert!(found.len() == expected.len() && found.iter().zip(expected).all(close), "{found:?} {expected:?}");
+    };
+    near(along(DVec3::new(0.25, 0.0, -1.0), DVec3::Z), &[(0.25, 0.25), (0.25, 1.75)]);
+    near(along(DVec3::new(0.75, 0.0, -1.0), DVec3::Z), &[(0.75, 0.75), (0.75, 1.25)]);
+    near(along(DVec3::new(1.25, 0.0, -1.0), DVec3::Z), &[]);
+    // Parallel to the cone that opens upwards, a quarter within it.
+    near(along(DVec3::new(-0.25, 0.0, 0.0), DVec3::new(1.0, 0.0, 1.0)), &[(0.0, 0.25), (0.875, 1.125)]);
+    for wall in [DVec3::new(0.5, 0.0, 0.0), DVec3::new(0.3, 0.4, -3.0)] {
+        assert_eq!(along(wall, DVec3::Z).len() % 2, 0);
+    }
+    assert_eq!(along(DVec3::new(-1.0, 0.0, -1.0), DVec3::new(1.0, 0.0, 1.0)).len() % 2, 0);
+}
