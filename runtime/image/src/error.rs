@@ -16,4 +16,10 @@ pub enum ImageError {
     Shape { what: &'static str, found: usize, expected: usize },
     #[error("not a spectral image: {0}")]
     NotSpectral(String),
+    /// No format that is read here.
+    #[error("not a picture of a kind that is read: spectral or RGB OpenEXR, PNG, TIFF, CSV of bands, ARTRAW")]
+    Unknown,
+    /// Right in form, wrong in content.
+    #[error("the picture cannot be used: {0}")]
+    Malformed(String),
 }

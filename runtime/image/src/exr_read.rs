@@ -1,22 +1,42 @@
-//! Reading spectral OpenEXR files.
+//! Reading OpenEXR files.
 //!
-//! Understands what [`crate::encode_exr`] writes and, of the layout by Fichet, Pacanowski and Wilkie, emissive images
-//! (`S0.<λ>nm`, and `S1` to `S3` where all three are there with the same wavelengths) of other writers: without `arsc:bandEdges` the edges are the midpoints between
-//! neighbouring wavelengths, as the layout prescribes; without `XYZ.*` the image is refused.
+//! Spectral images as [`crate::encode_exr`] writes them and, of the layout by Fichet, Pacanowski and Wilkie, emissive
+//! images (`S0.<λ>nm`, and `S1` to `S3` where all three are there with the same wavelengths) of other writers, in any
+//! unit of wavelength or frequency that the layout allows: without `arsc:bandEdges` the edges are the midpoints between
+//! neighbouring wavelengths, as the layout prescribes; without `XYZ.*` the colour follows from the bands.
+//! Left-handed circular polarisation is turned to right-handed.
+//! Colours: `XYZ.*`, else `R`, `G`, `B` or `Y`, linear, by the attributes `chromaticities` and `whiteLuminance`.
 
 use exr::prelude::*;
+use glam::DMat3;
 
-use crate::{Channel, ImageError, SpectralImage};
+use arsc_spectral::{colour_space, srgb};
 
-/// ZIP shrinks at most by about this factor: a file that claims more pixels than that is not believed.
-const LARGEST_COMPRESSION: u64 = 1100;
+use crate::{Channel, ColourImage, ImageError, Picture, SpectralImage, UNIT_LUMINANCE, claims, spectral};
 
-/// An image from the bytes of a file.
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+type Whole = Image<Layer<AnyChannels<FlatSamples>>>;
+
+/// A spectral image from the bytes of a file.
 ///
 /// Errors: [`ImageError::Decode`] for what is no OpenEXR file or claims more pixels than its bytes can hold,
 /// [`ImageError::NotSpectral`] for what lacks the spectral channels.
 pub fn decode_exr(bytes: &[u8]) -> std::result::Result<SpectralImage, ImageError> {
-    let failed = |source: Box<dyn std::error::Error + Send + Sync>| ImageError::Decode { format: "OpenEXR", source };
+    from_layer(&decode(bytes)?.layer_data)
+}
+
+/// A spectral image, or one of colours where there are no spectral channels.
+pub fn decode_exr_picture(bytes: &[u8]) -> std::result::Result<Picture, ImageError> {
+    let image = decode(bytes)?;
+    if bands_of(&image.layer_data.channel_data.list, '0').is_empty() {
+        return colours(&image).map(Picture::Colour);
+    }
+    from_layer(&image.layer_data).map(Picture::Spectral)
+}
+
+fn decode(bytes: &[u8]) -> std::result::Result<Whole, ImageError> {
+    let failed = |source: Failure| ImageError::Decode { format: "OpenEXR", source };
     check_claimed_size(bytes).map_err(failed)?;
     let image = read()
         .no_deep_data()
@@ -26,20 +46,60 @@ pub fn decode_exr(bytes: &[u8]) -> std::result::Result<SpectralImage, ImageError
         .all_attributes()
         .from_buffered(std::io::Cursor::new(bytes))
         .map_err(|error| failed(Box::new(error)))?;
-    from_layer(&image.layer_data)
+    let pixels = image.layer_data.size.area();
+    let short = |channel: &AnyChannel<FlatSamples>| channel.sample_data.len() != pixels;
+    if image.layer_data.channel_data.list.iter().any(short) {
+        return Err(ImageError::Malformed("channels of fewer samples than pixels are not read".into()));
+    }
+    Ok(image)
 }
 
-fn check_claimed_size(bytes: &[u8]) -> std::result::Result<(), Box<dyn std::error::Error + Send + Sync>> {
+fn check_claimed_size(bytes: &[u8]) -> std::result::Result<(), Failure> {
     let meta = MetaData::read_from_buffered(std::io::Cursor::new(bytes), false)?;
-    let limit = (bytes.len() as u64).saturating_mul(LARGEST_COMPRESSION);
+    let limit = claims::most_bytes(bytes) as u64;
     for header in &meta.headers {
         let size = header.layer_size;
         let samples = (size.0 as u64).saturating_mul(size.1 as u64).saturating_mul(header.channels.list.len() as u64);
-        if samples > limit {
+        if samples.saturating_mul(2) > limit {
             return Err("the header claims more pixels than the file can hold".into());
         }
     }
     Ok(())
+}
+
+/// Colours of a file without spectral channels.
+fn colours(image: &Whole) -> std::result::Result<ColourImage, ImageError> {
+    let layer = &image.layer_data;
+    let channels = &layer.channel_data.list;
+    let size = [layer.size.0, layer.size.1];
+    let three = |names: [&str; 3]| -> Option<Vec<[f64; 3]>> {
+        let named = |name: &str| channels.iter().find(|channel| channel.name.eq(name));
+        let [Some(a), Some(b), Some(c)] = names.map(named) else { return None };
+        let [a, b, c] = [a, b, c].map(|channel| channel.sample_data.values_as_f32().map(f64::from));
+        Some(a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]).collect())
+    };
+    let rgb = || three(["R", "G", "B"]).or_else(|| three(["Y"; 3]));
+    let mut colours = if let Some(xyz) = three(["XYZ.X", "XYZ.Y", "XYZ.Z"]) {
+        ColourImage::from_linear(size, xyz.into_iter(), DMat3::IDENTITY)?
+    } else if let Some(rgb) = rgb() {
+        ColourImage::from_linear(size, rgb.into_iter(), absolute_xyz_from_rgb(image))?
+    } else {
+        return Err(ImageError::Malformed("it has neither S0.<wavelength>nm, nor XYZ, nor R, G, B, nor Y".into()));
+    };
+    colours.channels = further_channels(channels);
+    colours.metadata = metadata(&layer.attributes).0;
+    colours.verify()?;
+    Ok(colours)
+}
+
+/// By the primaries and the luminance of white that the file states, else sRGB and [`UNIT_LUMINANCE`].
+fn absolute_xyz_from_rgb(image: &Whole) -> DMat3 {
+    let luminance = image.layer_data.attributes.white_luminance.map(f64::from).filter(|l| *l > 0.0 && l.is_finite());
+    let stated = image.attributes.chromaticities.map(|c| {
+        let [red, green, blue, white] = [c.red, c.green, c.blue, c.white].map(|p| [f64::from(p.0), f64::from(p.1)]);
+        colour_space::xyz_from_rgb([red, green, blue], white)
+    });
+    stated.filter(|m| m.is_finite()).unwrap_or_else(srgb::xyz_from_rgb) * luminance.unwrap_or(UNIT_LUMINANCE)
 }
 
 fn from_layer(layer: &Layer<AnyChannels<FlatSamples>>) -> std::result::Result<SpectralImage, ImageError> {
@@ -50,9 +110,6 @@ fn from_layer(layer: &Layer<AnyChannels<FlatSamples>>) -> std::result::Result<Sp
     if bands.is_empty() {
         return Err(ImageError::NotSpectral("no channel is named S0.<wavelength>nm".into()));
     }
-    let [Some(x), Some(y), Some(z)] = ["XYZ.X", "XYZ.Y", "XYZ.Z"].map(named) else {
-        return Err(ImageError::NotSpectral("the XYZ channels are missing".into()));
-    };
     let mut radiance = vec![0.0; width * height * bands.len()];
     for (band, (_, channel)) in bands.iter().enumerate() {
         for (pixel, value) in channel.sample_data.values_as_f32().enumerate() {
@@ -73,19 +130,19 @@ fn from_layer(layer: &Layer<AnyChannels<FlatSamples>>) -> std::result::Result<Sp
             stokes[parameter] = value;
         }
     }
-    let xyz = x.sample_data.values_as_f32().zip(y.sample_data.values_as_f32()).zip(z.sample_data.values_as_f32());
     let centers: Vec<f64> = bands.iter().map(|band| band.0).collect();
     let (metadata, edges) = metadata(&layer.attributes);
-    let image = SpectralImage {
-        width,
-        height,
-        band_edges_nm: edges.filter(|e| e.len() == centers.len() + 1).unwrap_or_else(|| midpoints(&centers)),
-        radiance,
-        stokes,
-        xyz: xyz.map(|((x, y), z)| [x, y, z]).collect(),
-        channels: further_channels(&layer.channel_data.list),
-        metadata,
-    };
+    if handedness(&layer.attributes).as_deref() == Some("left") {
+        stokes.iter_mut().flatten().for_each(|stokes| stokes[2] = -stokes[2]);
+    }
+    let edges = edges.filter(|e| e.len() == centers.len() + 1).unwrap_or_else(|| spectral::midpoints(&centers));
+    let mut image = spectral::from_bands([width, height], edges, radiance, stokes)?;
+    if let [Some(x), Some(y), Some(z)] = ["XYZ.X", "XYZ.Y", "XYZ.Z"].map(named) {
+        let xyz = x.sample_data.values_as_f32().zip(y.sample_data.values_as_f32()).zip(z.sample_data.values_as_f32());
+        image.xyz = xyz.map(|((x, y), z)| [x, y, z]).collect();
+    }
+    image.channels = further_channels(&layer.channel_data.list);
+    image.metadata = metadata;
     image.verify()?;
     Ok(image)
 }
@@ -115,22 +172,51 @@ fn bands_of(channels: &[AnyChannel<FlatSamples>], parameter: char) -> Vec<(f64, 
     bands
 }
 
-/// The wavelength of `S0.550,000000nm`, for the Stokes parameter 0.
+/// The wavelength of `S0.550,000000nm`, for the Stokes parameter 0; also in other units, as `S0.545,0THz`.
 fn wavelength_nm(channel: &str, parameter: char) -> Option<f64> {
-    let number = channel.strip_prefix('S')?.strip_prefix(parameter)?.strip_prefix('.')?.strip_suffix("nm")?;
-    let value: f64 = number.replace(',', ".").parse().ok()?;
+    let quantity = channel.strip_prefix('S')?.strip_prefix(parameter)?.strip_prefix('.')?;
+    let (quantity, is_frequency) = match quantity.strip_suffix("Hz") {
+        Some(quantity) => (quantity, true),
+        None => (quantity.strip_suffix('m')?, false),
+    };
+    let digits = quantity.trim_end_matches(char::is_alphabetic);
+    let (digits, prefix) = quantity.split_at(digits.len());
+    let scale = match prefix {
+        "" => 1.0,
+        "Y" => 1e24,
+        "Z" => 1e21,
+        "E" => 1e18,
+        "P" => 1e15,
+        "T" => 1e12,
+        "G" => 1e9,
+        "M" => 1e6,
+        "k" => 1e3,
+        "h" => 1e2,
+        "da" => 1e1,
+        "d" => 1e-1,
+        "c" => 1e-2,
+        "m" => 1e-3,
+        "u" => 1e-6,
+        "n" => 1e-9,
+        "p" => 1e-12,
+        _ => return None,
+    };
+    let number: f64 = digits.replace(',', ".").parse().ok()?;
+    // What is written in nanometres stays the number that was written.
+    let value = match (is_frequency, prefix) {
+        (true, _) => 299_792_458e9 / (number * scale),
+        (false, "n") => number,
+        (false, _) => number * scale * 1e9,
+    };
     (value.is_finite() && value > 0.0).then_some(value)
 }
 
-/// Edges half-way between neighbours; the outermost bands are symmetric about their centres.
-fn midpoints(centers: &[f64]) -> Vec<f64> {
-    let (first, last) = (centers[0], centers[centers.len() - 1]);
-    let half = |pair: Option<(f64, f64)>| pair.map_or(0.5, |(a, b)| 0.5 * (b - a));
-    let at = |i: usize| Some((*centers.get(i)?, *centers.get(i + 1)?));
-    std::iter::once(first - half(at(0)))
-        .chain(centers.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])))
-        .chain(std::iter::once(last + half(centers.len().checked_sub(2).and_then(at))))
-        .collect()
+/// What the file says of circular polarisation.
+fn handedness(attributes: &LayerAttributes) -> Option<String> {
+    match attributes.other.get(&Text::from("polarisationHandedness"))? {
+        AttributeValue::Text(text) => Some(text.to_string()),
+        _ => None,
+    }
 }
 
 type Metadata = Vec<(String, String)>;
@@ -234,9 +320,19 @@ mod tests {
     }
 
     #[test]
-    fn edges_default_to_midpoints() {
-        assert_eq!(midpoints(&[400.0, 410.0, 430.0]), vec![395.0, 405.0, 420.0, 440.0]);
-        assert_eq!(midpoints(&[500.0]), vec![499.5, 500.5]);
+    fn wavelengths_have_many_units() {
+        for (name, nm) in [
+            ("S0.550,000000nm", 550.0),
+            ("S0.5,5e-7m", 550.0),
+            ("S0.0,55um", 550.0),
+            ("S0.545,0THz", 550.077_9),
+            ("S0.5,45E+14Hz", 550.077_9),
+        ] {
+            assert!(wavelength_nm(name, '0').is_some_and(|found| (found - nm).abs() < 1e-3), "{name}");
+        }
+        for name in ["S1.550nm", "S0.nm", "S0.-5nm", "S0.550xm", "S0.550", "T.550nm", "S0.infnm", "S0.0nm"] {
+            assert_eq!(wavelength_nm(name, '0'), None, "{name}");
+        }
     }
 
     #[test]

@@ -9,30 +9,72 @@
 //! `arsc:radianceUnits` says), `arsc:bandEdges`, and the image's metadata as `arsc:<name>`.
 //! ZIP in blocks of 16 lines, lines in increasing order, attributes sorted by name.
 
+use arsc_spectral::colour_space;
 use arsc_spectral::srgb::rgb_from_xyz;
+use exr::meta::attribute::Chromaticities;
 use exr::prelude::*;
 use glam::{DMat3, Vec3};
 
-use crate::{ImageError, SpectralImage, UNIT_LUMINANCE, exr_header};
+use crate::{Channel, ColourImage, DisplayImage, ImageError, SpectralImage, UNIT_LUMINANCE, exr_header};
 
 /// The bytes of a spectral OpenEXR file.
 pub fn encode_exr(image: &SpectralImage) -> std::result::Result<Vec<u8>, ImageError> {
     image.verify()?;
+    let attributes = attributes(image);
+    let channels = [bands(image), colours(&image.xyz), further(&image.channels)].concat();
+    encode(Vec2(image.width, image.height), attributes, None, channels)
+}
+
+/// The bytes of an OpenEXR file of colours: `R`, `G`, `B` and `XYZ.*` as in spectral files.
+pub fn encode_colour_exr(image: &ColourImage) -> std::result::Result<Vec<u8>, ImageError> {
+    image.verify()?;
+    let mut attributes = LayerAttributes { white_luminance: Some(UNIT_LUMINANCE as f32), ..LayerAttributes::default() };
+    add_metadata(&mut attributes, &image.metadata);
+    encode(Vec2(image.width, image.height), attributes, None, [colours(&image.xyz), further(&image.channels)].concat())
+}
+
+/// The bytes of an OpenEXR file of what a display shows: linear components in [0, 1], with its primaries.
+pub fn encode_display_exr(image: &DisplayImage) -> std::result::Result<Vec<u8>, ImageError> {
+    image.verify()?;
+    let transfer = image.space.transfer();
+    let linear = |c: usize| image.rgb.iter().map(|p| transfer.decode(f64::from(p[c])) as f32).collect();
+    let channels = ["R", "G", "B"].into_iter().enumerate().map(|(i, name)| channel(name, linear(i))).collect();
+    let mut attributes = LayerAttributes::default();
+    add_metadata(&mut attributes, &image.metadata);
+    let [red, green, blue] = image.space.primaries().map(place);
+    let chromaticities = Chromaticities { red, green, blue, white: place(colour_space::D65_WHITE) };
+    encode(Vec2(image.width, image.height), attributes, Some(chromaticities), channels)
+}
+
+fn place([x, y]: [f64; 2]) -> Vec2<f32> {
+    Vec2(x as f32, y as f32)
+}
+
+fn encode(
+    size: Vec2<usize>,
+    attributes: LayerAttributes,
+    chromaticities: Option<Chromaticities>,
+    channels: Vec<AnyChannel<FlatSamples>>,
+) -> std::result::Result<Vec<u8>, ImageError> {
     let failed = |source: Box<dyn std::error::Error + Send + Sync>| ImageError::Encode { format: "OpenEXR", source };
-    let size = Vec2(image.width, image.height);
     let encoding =
         Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
-    let layer = Layer::new(size, attributes(image), encoding, AnyChannels::sort(channels(image).into()));
+    let layer = Layer::new(size, attributes, encoding, AnyChannels::sort(channels.into()));
+    let mut image = Image::from_layer(layer);
+    image.attributes.chromaticities = chromaticities;
     let mut bytes = std::io::Cursor::new(Vec::new());
-    Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|error| failed(Box::new(error)))?;
+    image.write().to_buffered(&mut bytes).map_err(|error| failed(Box::new(error)))?;
     let mut bytes = bytes.into_inner();
     exr_header::sort_attributes(&mut bytes).ok_or_else(|| failed("the header cannot be sorted".into()))?;
     Ok(bytes)
 }
 
-fn channels(image: &SpectralImage) -> Vec<AnyChannel<FlatSamples>> {
+fn channel(name: &str, samples: Vec<f32>) -> AnyChannel<FlatSamples> {
+    AnyChannel::new(name, FlatSamples::F32(samples))
+}
+
+fn bands(image: &SpectralImage) -> Vec<AnyChannel<FlatSamples>> {
     let bands = image.bands();
-    let channel = |name: &str, samples: Vec<f32>| AnyChannel::new(name, FlatSamples::F32(samples));
     let mut channels: Vec<_> = (0..bands)
         .map(|band| {
             let samples = image.radiance.iter().skip(band).step_by(bands).copied().collect();
@@ -45,17 +87,22 @@ fn channels(image: &SpectralImage) -> Vec<AnyChannel<FlatSamples>> {
             channels.push(channel(&band_name(parameter + 1, image.band_center_nm(band)), samples));
         }
     }
+    channels
+}
+
+fn colours(xyz: &[[f32; 3]]) -> Vec<AnyChannel<FlatSamples>> {
     let rgb_from_xyz: DMat3 = rgb_from_xyz() * UNIT_LUMINANCE.recip();
     let rgb: Vec<[f32; 3]> =
-        image.xyz.iter().map(|&xyz| (rgb_from_xyz * Vec3::from_array(xyz).as_dvec3()).as_vec3().to_array()).collect();
-    for (i, name) in ["R", "G", "B"].into_iter().enumerate() {
-        channels.push(channel(name, rgb.iter().map(|p| p[i]).collect()));
-    }
-    for (i, name) in ["XYZ.X", "XYZ.Y", "XYZ.Z"].into_iter().enumerate() {
-        channels.push(channel(name, image.xyz.iter().map(|p| p[i]).collect()));
-    }
-    channels.extend(image.channels.iter().map(|extra| channel(&extra.name, extra.samples.clone())));
-    channels
+        xyz.iter().map(|&xyz| (rgb_from_xyz * Vec3::from_array(xyz).as_dvec3()).as_vec3().to_array()).collect();
+    let three = |names: [&str; 3], values: &[[f32; 3]]| {
+        names.into_iter().enumerate().map(|(i, name)| channel(name, values.iter().map(|p| p[i]).collect())).collect()
+    };
+    let (rgb, xyz): (Vec<_>, Vec<_>) = (three(["R", "G", "B"], &rgb), three(["XYZ.X", "XYZ.Y", "XYZ.Z"], xyz));
+    [rgb, xyz].concat()
+}
+
+fn further(channels: &[Channel]) -> Vec<AnyChannel<FlatSamples>> {
+    channels.iter().map(|extra| channel(&extra.name, extra.samples.clone())).collect()
 }
 
 /// `S0.550,000000nm`
@@ -76,10 +123,14 @@ fn attributes(image: &SpectralImage) -> LayerAttributes {
     text("arsc:radianceUnits", "W.m^-2.sr^-1.nm^-1");
     let edges: Vec<String> = image.band_edges_nm.iter().map(f64::to_string).collect();
     text("arsc:bandEdges", &edges.join(";"));
-    for (name, value) in &image.metadata {
-        text(&format!("arsc:{name}"), value);
-    }
+    add_metadata(&mut attributes, &image.metadata);
     attributes
+}
+
+fn add_metadata(attributes: &mut LayerAttributes, metadata: &[(String, String)]) {
+    for (name, value) in metadata {
+        attributes.other.insert(utf8(&format!("arsc:{name}")), AttributeValue::Text(utf8(value)));
+    }
 }
 
 /// OpenEXR strings are bytes; they hold UTF-8 here.

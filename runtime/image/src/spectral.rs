@@ -1,5 +1,7 @@
 //! Spectral images.
 
+use arsc_spectral::{LUMINOUS_EFFICACY, Observer};
+
 use crate::ImageError;
 
 /// Radiance per band with CIE XYZ beside it.
@@ -70,6 +72,86 @@ impl SpectralImage {
     }
 }
 
+/// An unpolarised or polarised image whose XYZ follows from its bands.
+pub(crate) fn from_bands(
+    [width, height]: [usize; 2],
+    band_edges_nm: Vec<f64>,
+    radiance: Vec<f32>,
+    stokes: Option<Vec<[f32; 3]>>,
+) -> Result<SpectralImage, ImageError> {
+    let xyz = xyz_of_bands(&radiance, &band_edges_nm, Observer::Cie1931);
+    let (channels, metadata) = (Vec::new(), Vec::new());
+    let image = SpectralImage { width, height, band_edges_nm, radiance, stokes, xyz, channels, metadata };
+    image.verify()?;
+    Ok(image)
+}
+
+/// `[pixel][XYZ]` of `[pixel][band]` radiances, Y in cd m^-2; each band counts as constant.
+pub fn xyz_of_bands(radiance: &[f32], band_edges_nm: &[f64], observer: Observer) -> Vec<[f32; 3]> {
+    let weights = band_weights(band_edges_nm, observer);
+    let pixel = |bands: &[f32]| {
+        let mut xyz = [0.0; 3];
+        for (value, weight) in bands.iter().zip(&weights) {
+            for c in 0..3 {
+                xyz[c] += f64::from(*value) * weight[c];
+            }
+        }
+        xyz.map(|c| c as f32)
+    };
+    radiance.chunks_exact(weights.len().max(1)).map(pixel).collect()
+}
+
+/// What the radiance 1 of each band gives in X, Y and Z: integrals of the matching functions, in steps of at most 1 nm.
+pub fn band_weights(band_edges_nm: &[f64], observer: Observer) -> Vec<[f64; 3]> {
+    // Steps for bands so wide that they would not end; the functions are zero beyond a kilometre's fraction anyway.
+    const MOST_STEPS: f64 = 1e4;
+    let weight = |edge: &[f64]| {
+        let steps = (edge[1] - edge[0]).ceil().clamp(1.0, MOST_STEPS);
+        let width = (edge[1] - edge[0]) / steps;
+        let mut sum = [0.0; 3];
+        for i in 0..steps as u32 {
+            let matching = observer.matching_at(edge[0] + (f64::from(i) + 0.5) * width);
+            for c in 0..3 {
+                sum[c] += matching[c] * width * LUMINOUS_EFFICACY;
+            }
+        }
+        sum
+    };
+    band_edges_nm.windows(2).map(weight).collect()
+}
+
+/// Edges half-way between neighbouring centres; the outermost bands are symmetric about theirs.
+pub(crate) fn midpoints(centers: &[f64]) -> Vec<f64> {
+    let (first, last) = (centers[0], centers[centers.len() - 1]);
+    let half = |pair: Option<(f64, f64)>| pair.map_or(0.5, |(a, b)| 0.5 * (b - a));
+    let at = |i: usize| Some((*centers.get(i)?, *centers.get(i + 1)?));
+    std::iter::once(first - half(at(0)))
+        .chain(centers.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])))
+        .chain(std::iter::once(last + half(centers.len().checked_sub(2).and_then(at))))
+        .collect()
+}
+
 fn check(what: &'static str, found: usize, expected: usize) -> Result<(), ImageError> {
     if found == expected { Ok(()) } else { Err(ImageError::Shape { what, found, expected }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_default_to_midpoints() {
+        assert_eq!(midpoints(&[400.0, 410.0, 430.0]), vec![395.0, 405.0, 420.0, 440.0]);
+        assert_eq!(midpoints(&[500.0]), vec![499.5, 500.5]);
+    }
+
+    /// The equal-energy radiance 1 has the luminance that the unit is named after.
+    #[test]
+    fn bands_integrate_to_the_unit() {
+        let edges: Vec<f64> = (0..=47).map(|i| 360.0 + 10.0 * f64::from(i)).collect();
+        let [x, y, z] = xyz_of_bands(&[1.0; 47], &edges, Observer::Cie1931)[0].map(f64::from);
+        for value in [x, y, z] {
+            assert!((value / crate::UNIT_LUMINANCE - 1.0).abs() < 1e-3, "{x} {y} {z}");
+        }
+    }
 }

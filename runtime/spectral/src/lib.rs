@@ -5,12 +5,16 @@
 //! [`Spectrum`] is what a scene says; [`DenseSpectrum`] is the table that a renderer reads; [`SampledSpectrum`] is
 //! what one path carries at the four wavelengths of its [`SampledWavelengths`], drawn from a [`WavelengthDistribution`] over the [`WavelengthRange`] of the render.
 
+pub mod adaptation;
 pub mod colour;
+pub mod colour_space;
 mod daylight;
 mod dense;
 pub mod dispersion;
 mod eval;
+pub mod illuminant;
 mod observer;
+pub mod pictures;
 mod planck;
 mod range;
 mod reradiation;
@@ -20,6 +24,7 @@ pub mod sky;
 mod sky_lanes;
 mod spectrum;
 pub mod srgb;
+pub mod tone;
 mod uplift;
 mod wavelengths;
 
