@@ -90,7 +90,11 @@ fn cut_files_are_errors() {
             let may_pass = cut + 12 >= bytes.len() || name.ends_with(".csv");
             match Picture::decode(&bytes[..cut]) {
                 Err(_) => {}
-                Ok(picture) => assert!(may_pass && picture.width() == 5, "{name} cut at {cut} of {}", bytes.len()),
+                Ok(picture) => assert!(
+                    may_pass && (picture.width() == 5 || name.ends_with(".csv")),
+                    "{name} cut at {cut} of {}",
+                    bytes.len()
+                ),
             }
         }
     }
