@@ -17,6 +17,7 @@ const RANKS: &[(&str, u32)] = &[
     ("arsc-mesh", 1),
     ("arsc-sema", 2),
     ("arsc-opt", 2),
+    ("arsc-imaging", 2),
     ("arsc-render", 2),
     ("arsc-driver", 3),
     ("arsc-assembly", 3),
@@ -33,6 +34,7 @@ const PURE: &[&str] = &[
     "compiler/driver",
     "runtime/geometry",
     "runtime/spectral",
+    "runtime/imaging",
 ];
 
 /// Past this many lines a file usually holds two reasons to change.

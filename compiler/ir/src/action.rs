@@ -1,5 +1,6 @@
 //! Actions: what is done with the scene. Stack effects were checked by the compiler.
 
+use arsc_spectral::tone::Exposure;
 use arsc_spectral::{Observer, WavelengthRange};
 
 /// How CSG is traced; all give the same picture (docs/csg.md).
@@ -44,14 +45,6 @@ impl Strategy {
             Strategy::Incremental => "incremental",
         }
     }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Exposure {
-    /// From the log-average luminance of the image.
-    Auto,
-    /// In stops: radiances are multiplied by 2^ev.
-    Ev(f64),
 }
 
 /// What `path_trace` is asked for.

@@ -23,7 +23,7 @@ mod term;
 mod verify;
 mod write;
 
-pub use action::{Action, Exposure, PathTrace, Strategy};
+pub use action::{Action, PathTrace, Strategy};
 pub use builder::Builder;
 pub use camera::{Camera, Filter, Projection};
 pub use light::{Environment, Light};
@@ -34,6 +34,7 @@ pub use read::{Meshes, ReadError, read, read_with};
 pub use verify::{Violation, verify};
 
 pub use arsc_geometry::{Aabb, Shape};
+pub use arsc_spectral::tone::Exposure;
 pub use arsc_spectral::{Observer, Spectrum, WavelengthRange};
 
 /// A scene with its camera and its action sequence.

@@ -360,14 +360,24 @@ impl Display for Text<'_, Action> {
                 .arg("observer", trace.observer.name())?
                 .arg("polarised", trace.polarised)?
                 .end(),
-            Action::ToneMap { exposure: Exposure::Auto } => f.write_str("tone_map(exposure: auto)"),
-            Action::ToneMap { exposure: Exposure::Ev(ev) } => Call::new(f, "tone_map")?.float("exposure", *ev)?.end(),
+            Action::ToneMap { exposure } => Call::new(f, "tone_map")?.arg("exposure", Text(exposure))?.end(),
             Action::WriteExr { path } => Call::new(f, "write_exr")?.arg("path", Quoted(path))?.end(),
             Action::WritePng { path } => Call::new(f, "write_png")?.arg("path", Quoted(path))?.end(),
             Action::Dup => f.write_str("dup()"),
             Action::Swap => f.write_str("swap()"),
             Action::Drop => f.write_str("drop()"),
             Action::Over => f.write_str("over()"),
+        }
+    }
+}
+
+impl Display for Text<'_, Exposure> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match *self.0 {
+            Exposure::Auto => f.write_str("auto"),
+            Exposure::Ev(ev) => write!(f, "{}", Float(ev)),
+            Exposure::Key(key) => Call::new(f, "key")?.value(Float(key))?.end(),
+            Exposure::Percentile(percent) => Call::new(f, "percentile")?.value(Float(percent))?.end(),
         }
     }
 }

@@ -462,11 +462,7 @@ fn action(term: Term) -> Result<Action, Fault> {
             polarised: args.boolean("polarised")?,
         }),
         "tone_map" => {
-            let exposure = args.take("exposure")?;
-            let exposure = match exposure.kind {
-                TermKind::Word("auto") => Exposure::Auto,
-                _ => Exposure::Ev(float(&exposure)?),
-            };
+            let exposure = exposure(args.take("exposure")?)?;
             Action::ToneMap { exposure }
         }
         "write_exr" => Action::WriteExr { path: args.text("path")? },
@@ -479,6 +475,22 @@ fn action(term: Term) -> Result<Action, Fault> {
     };
     args.end()?;
     Ok(action)
+}
+
+fn exposure(term: Term) -> Result<Exposure, Fault> {
+    match term.kind {
+        TermKind::Word("auto") => return Ok(Exposure::Auto),
+        TermKind::Number(_) | TermKind::Word(_) => return float(&term).map(Exposure::Ev),
+        _ => {}
+    }
+    let mut args = Args::new(term)?;
+    let exposure = match args.name {
+        "key" => Exposure::Key(float(&args.next()?)?),
+        "percentile" => Exposure::Percentile(float(&args.next()?)?),
+        _ => return args.unknown("exposure"),
+    };
+    args.end()?;
+    Ok(exposure)
 }
 
 fn strategy(term: &Term) -> Result<Strategy, Fault> {

@@ -8,9 +8,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use arsc_image::{DisplayImage, SpectralImage};
+use arsc_image::{Depth, DisplayImage, Picture, SpectralImage};
 use arsc_ir::{Action, Ir, PathTrace};
 use arsc_render::{Bands, PathTraceSettings, path_trace};
+use arsc_spectral::tone::ToneMap;
 
 use crate::stage::{Stage, accel_strategy};
 use crate::{AssemblyError, Host, Settings, measure_rays};
@@ -127,16 +128,13 @@ impl Machine<'_> {
                 self.write(path, &bytes)?;
             }
             Action::ToneMap { exposure } => {
-                let exposure = match exposure {
-                    arsc_ir::Exposure::Auto => arsc_image::Exposure::Auto,
-                    arsc_ir::Exposure::Ev(ev) => arsc_image::Exposure::Ev(*ev),
-                };
-                let image = arsc_image::tone_map(&*self.spectral("tone_map")?, exposure)?;
+                let picture = Picture::Spectral(self.spectral("tone_map")?.as_ref().clone());
+                let image = arsc_imaging::tone_map(&picture, &ToneMap { exposure: *exposure, ..ToneMap::default() });
                 self.stack.pop();
                 self.stack.push(Item::Display(Arc::new(image)));
             }
             Action::WritePng { path } => {
-                let bytes = arsc_image::encode_png(&*self.display("write_png")?)?;
+                let bytes = arsc_image::encode_png(&*self.display("write_png")?, Depth::Eight)?;
                 self.write(path, &bytes)?;
             }
             Action::Dup => self.shuffle("dup", 1, |items| vec![items[0].clone(), items[0].clone()])?,

@@ -182,7 +182,7 @@ mod tests {
         assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && svg.matches("<polyline").count() > 6);
         let image = plot.to_pixels();
         assert_eq!((image.width, image.height), (480, 240));
-        assert!(image.rgb.iter().any(|p| *p == INK));
+        assert!(image.rgb.contains(&INK));
         let dark = Pixel { radiance: vec![f32::NAN, 0.0], ..pixel(&picture(), [0, 0]).unwrap() };
         assert!(!spectrum_plot(&dark, [200, 100]).unwrap().to_svg().contains("NaN"));
     }

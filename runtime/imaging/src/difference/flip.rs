@@ -171,7 +171,7 @@ mod tests {
         let level = |n: usize| (n % 256) as f64 / 255.0;
         let pixel = |i: usize| {
             let (x, y) = (i % width, i / width);
-            let stripe = if (x + phase) / 8 % 2 == 0 { 40 } else { 0 };
+            let stripe = if ((x + phase) / 8).is_multiple_of(2) { 40 } else { 0 };
             DVec3::new(level(7 * x + stripe), level(5 * y + 3 * x * phase), level(x * y + 11 * phase))
         };
         (0..width * height).map(pixel).collect()

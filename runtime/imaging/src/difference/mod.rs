@@ -15,66 +15,8 @@ use crate::combine::check_alike;
 use crate::draw::{ColourMap, beside, scale_bar};
 use crate::{ImagingError, luminances, slice};
 
+pub use arsc_spectral::pictures::{Metric, Question};
 pub use flip::{PIXELS_PER_DEGREE, flip};
-
-/// Number that a pixel's difference is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Metric {
-    /// CIEDE2000 (Sharma, Wu and Dalal 2005).
-    #[default]
-    Ciede2000,
-    /// Distance in CIE L*a*b* (1976).
-    Cie76,
-    /// L* of the second less that of the first.
-    Lightness,
-    /// Chroma C*ab of the second less that of the first.
-    Chroma,
-    /// Difference of hue H*ab, without sign.
-    Hue,
-    /// FLIP for low dynamic range (Andersson et al. 2020), from 0 to 1.
-    Flip,
-    /// The second less the first: of luminances in cd m^-2, or of radiances at a wavelength.
-    PlusMinus,
-}
-
-impl Metric {
-    pub const ALL: [Metric; 7] = [
-        Metric::Ciede2000,
-        Metric::Cie76,
-        Metric::Lightness,
-        Metric::Chroma,
-        Metric::Hue,
-        Metric::Flip,
-        Metric::PlusMinus,
-    ];
-
-    /// As it is written in scripts and arguments.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Metric::Ciede2000 => "ciede2000",
-            Metric::Cie76 => "cie76",
-            Metric::Lightness => "lightness",
-            Metric::Chroma => "chroma",
-            Metric::Hue => "hue",
-            Metric::Flip => "flip",
-            Metric::PlusMinus => "plus_minus",
-        }
-    }
-
-    pub const fn is_signed(self) -> bool {
-        matches!(self, Metric::Lightness | Metric::Chroma | Metric::PlusMinus)
-    }
-}
-
-/// What is asked.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Question {
-    pub metric: Metric,
-    /// For [`Metric::PlusMinus`]: radiances at this wavelength.
-    pub wavelength_nm: Option<f64>,
-    /// `None`: 0 EV if the first picture has no spectrum and is nowhere brighter than display white, else automatic.
-    pub exposure: Option<Exposure>,
-}
 
 /// A difference per pixel.
 #[derive(Clone, Debug, PartialEq)]

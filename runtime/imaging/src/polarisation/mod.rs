@@ -14,106 +14,13 @@ use crate::draw::{Colour, ColourMap, Entry, beside, blank, scale_bar, swatches};
 use crate::slice::neighbours;
 use crate::{ImagingError, luminances};
 
+pub use arsc_spectral::pictures::{Overlay, Quantity, View};
+
 const RED: Colour = [1.0, 0.0, 0.0];
 const CYAN: Colour = [0.0, 0.95, 0.95];
 const YELLOW: Colour = [0.98, 0.95, 0.05];
 const BLUE: Colour = [0.15, 0.35, 1.0];
 const GREEN: Colour = [0.0, 0.85, 0.1];
-
-/// What is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Quantity {
-    /// Degree of polarisation, sqrt(S1² + S2² + S3²) / S0.
-    #[default]
-    Degree,
-    /// Its linear part, sqrt(S1² + S2²) / S0.
-    Linear,
-    /// Its circular part, |S3| / S0.
-    Circular,
-    /// Linear and circular part in their colours.
-    Type,
-    /// In which direction the linear part vibrates, as bright as its degree.
-    Orientation,
-    /// Which way the circular part turns, S3 / S0.
-    Chirality,
-    /// S1 / S0, horizontal against vertical.
-    S1,
-    /// S2 / S0, rising against falling diagonals.
-    S2,
-    /// S3 / S0, right against left.
-    S3,
-}
-
-impl Quantity {
-    pub const ALL: [Quantity; 9] = [
-        Quantity::Degree,
-        Quantity::Linear,
-        Quantity::Circular,
-        Quantity::Type,
-        Quantity::Orientation,
-        Quantity::Chirality,
-        Quantity::S1,
-        Quantity::S2,
-        Quantity::S3,
-    ];
-
-    /// As it is written in scripts and arguments.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Quantity::Degree => "degree",
-            Quantity::Linear => "linear",
-            Quantity::Circular => "circular",
-            Quantity::Type => "type",
-            Quantity::Orientation => "orientation",
-            Quantity::Chirality => "chirality",
-            Quantity::S1 => "s1",
-            Quantity::S2 => "s2",
-            Quantity::S3 => "s3",
-        }
-    }
-}
-
-/// How the false colours and the picture go together.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Overlay {
-    /// False colours alone.
-    #[default]
-    None,
-    /// False colours, as bright as the picture.
-    Luminance,
-    /// The picture in grey, with false colours as strong as the light is polarised.
-    Picture,
-}
-
-impl Overlay {
-    pub const ALL: [Overlay; 3] = [Overlay::None, Overlay::Luminance, Overlay::Picture];
-
-    /// As it is written in scripts and arguments.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Overlay::None => "none",
-            Overlay::Luminance => "luminance",
-            Overlay::Picture => "picture",
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    pub quantity: Quantity,
-    /// `None`: all bands, as the eye weighs them.
-    pub wavelength_nm: Option<f64>,
-    /// The value with the full colour; degrees above it saturate. Positive.
-    pub most: f64,
-    pub overlay: Overlay,
-    pub legend: bool,
-}
-
-impl Default for View {
-    fn default() -> View {
-        View { quantity: Quantity::Degree, wavelength_nm: None, most: 1.0, overlay: Overlay::None, legend: true }
-    }
-}
 
 /// The picture of a quantity. Pixels without light are black.
 pub fn visualise(picture: &Picture, view: &View) -> Result<DisplayImage, ImagingError> {
