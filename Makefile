@@ -1,6 +1,6 @@
 # Two commands do everything, from a bare Debian 12 on: `make render` and `make test`. Both are safe to repeat.
 
-SCENE ?= scenes/oren_nayar_spheres.arsl
+SCENE ?= scenes/gallery/oren_nayar_spheres.arsl
 OUT ?= out
 ARGS ?=
 

@@ -56,7 +56,7 @@ fn corpus() -> Vec<String> {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
     let page = std::fs::read_to_string(format!("{root}/docs/reference/language.md")).unwrap();
     let examples = page.split("```arsl\n").skip(1).map(|block| block.split("```").next().unwrap().to_owned());
-    let scenes = ["boolean_operators", "cornell_box", "oren_nayar_spheres"];
+    let scenes = ["boolean_operators", "cornell_box", "phyllotaxis"];
     let scenes = scenes.map(|name| std::fs::read_to_string(format!("{root}/scenes/{name}.arsl")).unwrap());
     examples.chain(scenes).filter(|text| !text.contains("parts/wheel.arsl")).collect()
 }
