@@ -82,6 +82,20 @@ impl Loader for ScriptFolder {
     }
 }
 
+/// Largest picture, bytes.
+const LARGEST_PICTURE: u64 = 8 << 30;
+
+/// The bytes of a picture named on the command line.
+pub fn read_picture(path: &Path) -> std::io::Result<Vec<u8>> {
+    let refuse = |what: &str| Err(std::io::Error::other(what));
+    if path.is_dir() {
+        return refuse("is a folder");
+    }
+    let mut bytes = Vec::new();
+    let read = std::fs::File::open(path)?.take(LARGEST_PICTURE + 1).read_to_end(&mut bytes)?;
+    if read as u64 > LARGEST_PICTURE { refuse("is larger than a picture may be") } else { Ok(bytes) }
+}
+
 /// The text of the script itself, `-` for standard input.
 pub fn read_script(scene: &Path) -> Result<Arc<str>, LoadError> {
     if scene == Path::new("-") {

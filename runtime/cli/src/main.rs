@@ -10,18 +10,24 @@ mod bench_rays;
 mod bug;
 mod check;
 mod compile;
+mod denoise;
+mod diff;
 mod exit;
 mod explain;
 mod failure;
 mod files;
 mod host;
+mod image;
 mod interrupt;
 mod ir;
+mod pictures;
+mod polvis;
 mod probe;
 mod progress;
 mod render;
 mod report;
 mod statistics;
+mod tonemap;
 
 use clap::{Parser, Subcommand};
 
@@ -45,6 +51,11 @@ enum Command {
     Render(render::Args),
     Probe(probe::Args),
     Bench(bench::Args),
+    Tonemap(tonemap::Args),
+    Diff(diff::Args),
+    Polvis(polvis::Args),
+    Image(image::Args),
+    Denoise(denoise::Args),
 }
 
 fn main() -> std::process::ExitCode {
@@ -61,5 +72,10 @@ fn run(cli: Cli) -> Exit {
         Command::Render(args) => render::run(&args),
         Command::Probe(args) => probe::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Tonemap(args) => tonemap::run(&args),
+        Command::Diff(args) => diff::run(&args),
+        Command::Polvis(args) => polvis::run(&args),
+        Command::Image(args) => image::run(&args),
+        Command::Denoise(args) => denoise::run(&args),
     }
 }

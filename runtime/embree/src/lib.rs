@@ -1,4 +1,4 @@
-//! The one door to Embree 3.13: bindings and a safe wrapper. All `unsafe` of the project is in this crate.
+//! The one door to Embree 3.13: bindings and a safe wrapper. All `unsafe` of the project is in this crate and in `arsc-denoise`.
 //!
 //! A [`Device`] turns Embree's error callback into [`EmbreeError`]s and counts the bytes that Embree holds.
 //! A [`SceneBuilder`] takes triangles, quads, user geometry and instances; [`SceneBuilder::commit`] gives a

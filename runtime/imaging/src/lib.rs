@@ -1,7 +1,7 @@
 //! What is done with pictures after they were rendered. Pure: pictures in, pictures and numbers out.
 //!
 //! [`tone_map`] leads to a display; [`difference`] compares; [`polarisation`] shows Stokes parameters in false colours;
-//! [`polariser`] puts a filter before a picture; [`slice`](mod@slice) picks a wavelength; [`combine`] adds and merges; [`reshape`] crops
+//! [`polariser`] puts a filter before a picture; [`slice`](mod@slice) picks a wavelength; [`combine`] adds and merges; [`mod@denoise`] filters; [`reshape`] crops
 //! and shrinks; [`probe`] tells what a pixel holds; [`draw`] has scale bars, text and false colours. Files are `arsc-image`'s
 //! matter, colour science that of `arsc-spectral`.
 //!
@@ -9,6 +9,7 @@
 //! [`arsc_image::UNIT_LUMINANCE`] where a colour is shown.
 
 pub mod combine;
+pub mod denoise;
 pub mod difference;
 pub mod draw;
 mod error;
@@ -22,4 +23,4 @@ mod tone_map;
 
 pub use error::ImagingError;
 pub use summary::{Summary, summary};
-pub use tone_map::{luminances, tone_map};
+pub use tone_map::{is_display, luminances, tone_map};

@@ -9,6 +9,13 @@ pub fn luminances(xyz: &[[f32; 3]]) -> Luminances {
     Luminances::new(xyz.iter().map(|p| f64::from(p[1]) / UNIT_LUMINANCE))
 }
 
+/// Whether a display shows the picture as it is: no spectrum, and nowhere brighter than its white.
+pub fn is_display(picture: &Picture) -> bool {
+    // Rounding of the white.
+    let white = (UNIT_LUMINANCE * 1.001) as f32;
+    matches!(picture, Picture::Colour(_)) && picture.xyz().iter().all(|xyz| xyz[1] <= white)
+}
+
 /// Gives the display image and adds the exposure that was used, in EV, to its metadata. Pixels that are not finite
 /// come out black.
 pub fn tone_map(picture: &Picture, wanted: &ToneMap) -> DisplayImage {

@@ -13,7 +13,7 @@ use glam::DVec3;
 
 use crate::combine::check_alike;
 use crate::draw::{ColourMap, beside, scale_bar};
-use crate::{ImagingError, luminances, slice};
+use crate::{ImagingError, is_display, luminances, slice};
 
 pub use arsc_spectral::pictures::{Metric, Question};
 pub use flip::{PIXELS_PER_DEGREE, flip};
@@ -90,10 +90,7 @@ fn is_finite(xyz: &[f32; 3]) -> bool {
 
 /// The exposure that both pictures get.
 fn exposure(a: &Picture, asked: Option<Exposure>) -> Exposure {
-    // Rounding of a display's white.
-    let white = (UNIT_LUMINANCE * 1.001) as f32;
-    let is_display = matches!(a, Picture::Colour(_)) && a.xyz().iter().all(|xyz| xyz[1] <= white);
-    asked.unwrap_or(if is_display { Exposure::Ev(0.0) } else { Exposure::Auto })
+    asked.unwrap_or(if is_display(a) { Exposure::Ev(0.0) } else { Exposure::Auto })
 }
 
 fn display(a: &Picture, asked: Option<Exposure>) -> Display {
