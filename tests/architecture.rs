@@ -11,6 +11,7 @@ const RANKS: &[(&str, u32)] = &[
     ("arsc-spectral", 0),
     ("arsc-embree", 0),
     ("arsc-denoise", 0),
+    ("arsc-texture", 0),
     ("arsc-syntax", 1),
     ("arsc-ir", 1),
     ("arsc-accel", 1),
@@ -36,6 +37,7 @@ const PURE: &[&str] = &[
     "runtime/geometry",
     "runtime/spectral",
     "runtime/imaging",
+    "runtime/texture",
 ];
 
 /// Past this many lines a file usually holds two reasons to change.

@@ -16,5 +16,6 @@ mod closed_form {
     mod sky;
     mod specular;
     mod support;
+    mod textures;
     mod thermal;
 }

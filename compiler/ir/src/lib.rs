@@ -20,6 +20,8 @@ mod print;
 mod read;
 mod shape_text;
 mod term;
+mod varying;
+mod varying_text;
 mod verify;
 mod write;
 
@@ -31,11 +33,13 @@ pub use material::{Attributes, Bsdf, CutRule, Distribution, Emitter, Facets, Mat
 pub use medium::{Density, Medium, PhaseFunction};
 pub use node::{Leaf, Node, NodeId, NodeKind, Precedence, Surface};
 pub use read::{Meshes, ReadError, read, read_with};
+pub use varying::{Parameter, Part, SpectrumTerm, SpectrumTexture, Varying};
 pub use verify::{Violation, verify};
 
 pub use arsc_geometry::{Aabb, Shape};
 pub use arsc_spectral::tone::Exposure;
 pub use arsc_spectral::{Observer, Spectrum, WavelengthRange};
+pub use arsc_texture::Expression;
 
 /// A scene with its camera and its action sequence.
 #[derive(Clone, Debug, PartialEq)]

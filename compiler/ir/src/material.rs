@@ -1,6 +1,10 @@
 //! Attributes: what a surface does with light, and what fills a solid.
 
+use std::sync::Arc;
+
 use arsc_spectral::Spectrum;
+
+use crate::Varying;
 
 /// Index into [`crate::Ir::materials`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -92,6 +96,8 @@ pub enum Bsdf {
     Depolariser {
         transmittance: Spectrum,
     },
+    /// Parts and parameters that vary over the surface.
+    Varying(Arc<Varying>),
 }
 
 /// Emission of a surface towards the side of its normal (solids: outwards).
@@ -144,6 +150,9 @@ pub struct Material {
 impl Bsdf {
     /// Light passes through a closed wall of it, so that it matters what fills the solid.
     pub fn is_transmissive(&self) -> bool {
+        if let Bsdf::Varying(varying) = self {
+            return varying.parts.iter().any(|part| part.bsdf.is_transmissive());
+        }
         let interface = matches!(self, Bsdf::Dielectric { .. } | Bsdf::RoughDielectric { .. } | Bsdf::Inert);
         let element = matches!(self, Bsdf::Polariser { .. } | Bsdf::Retarder { .. } | Bsdf::Depolariser { .. });
         interface || element || matches!(self, Bsdf::ThinDielectric { .. })
@@ -151,6 +160,15 @@ impl Bsdf {
 
     /// It is an interface between two indices of refraction.
     pub fn has_index(&self) -> bool {
-        matches!(self, Bsdf::Dielectric { .. } | Bsdf::RoughDielectric { .. })
+        self.interface().is_some()
+    }
+
+    /// The interface between two indices of refraction that it is, or the first among its parts.
+    pub fn interface(&self) -> Option<&Bsdf> {
+        match self {
+            Bsdf::Dielectric { .. } | Bsdf::RoughDielectric { .. } => Some(self),
+            Bsdf::Varying(varying) => varying.parts.iter().find_map(|part| part.bsdf.interface()),
+            _ => None,
+        }
     }
 }

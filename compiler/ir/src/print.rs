@@ -60,7 +60,7 @@ impl Display for Ir {
 }
 
 /// Something as the text form writes it.
-struct Text<'a, T>(&'a T);
+pub(crate) struct Text<'a, T>(pub &'a T);
 
 /// A string literal: only `"`, `\` and control characters are escaped.
 pub(crate) struct Quoted<'a>(pub &'a str);
@@ -151,6 +151,7 @@ impl Display for Text<'_, Bsdf> {
             Bsdf::Retarder { retardance, angle } => {
                 Call::new(f, "retarder")?.float("retardance", *retardance)?.float("angle", *angle)?.end()
             }
+            Bsdf::Varying(varying) => write!(f, "{}", Text(&**varying)),
             Bsdf::Depolariser { transmittance } => {
                 Call::new(f, "depolariser")?.arg("transmittance", Text(transmittance))?.end()
             }

@@ -162,7 +162,7 @@ fn node_id(term: &Term, ir: &Ir) -> Result<NodeId, Fault> {
     }
 }
 
-fn spectrum(term: Term) -> Result<Spectrum, Fault> {
+pub(crate) fn spectrum(term: Term) -> Result<Spectrum, Fault> {
     let mut args = Args::new(term)?;
     let spectrum = match args.name {
         "constant" => Spectrum::Constant(float(&args.next()?)?),
@@ -195,8 +195,11 @@ fn spectrum(term: Term) -> Result<Spectrum, Fault> {
     Ok(spectrum)
 }
 
-fn bsdf(term: Term) -> Result<Bsdf, Fault> {
+pub(crate) fn bsdf(term: Term) -> Result<Bsdf, Fault> {
     let mut args = Args::new(term)?;
+    if args.name == "varying" {
+        return crate::varying_text::varying(args).map(|varying| Bsdf::Varying(varying.into()));
+    }
     let bsdf = match args.name {
         "lambert" => Bsdf::Lambert { reflectance: spectrum(args.take("reflectance")?)? },
         "oren_nayar" => {

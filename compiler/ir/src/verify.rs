@@ -10,7 +10,7 @@ use arsc_spectral::Spectrum;
 
 use crate::{
     Action, Attributes, Bsdf, Camera, CutRule, Density, Environment, Facets, Ir, Leaf, Light, Material, MaterialId,
-    Medium, NodeId, NodeKind, PhaseFunction, Projection, Surface,
+    Medium, NodeId, NodeKind, Parameter, PhaseFunction, Projection, Surface, Varying,
 };
 
 /// Spectra nest at most this deep, so that everybody may recurse into them.
@@ -214,6 +214,7 @@ fn check_environment(ir: &Ir, environment: &Environment) -> Check {
 
 fn check_bsdf(bsdf: &Bsdf) -> Check {
     match bsdf {
+        Bsdf::Varying(varying) => check_varying(varying),
         Bsdf::Lambert { reflectance } | Bsdf::Mirror { reflectance } => check_spectrum(reflectance),
         Bsdf::OrenNayar { reflectance, sigma } => {
             require(*sigma >= 0.0 && sigma.is_finite(), "sigma is negative or not finite")?;
@@ -241,6 +242,34 @@ fn check_bsdf(bsdf: &Bsdf) -> Check {
         }
         Bsdf::Depolariser { transmittance } => check_spectrum(transmittance),
     }
+}
+
+/// Expressions are sound by construction.
+fn check_varying(varying: &Varying) -> Check {
+    require(!varying.parts.is_empty(), "a varying bsdf has no parts")?;
+    require(invert(&varying.texture_from_object).is_some(), "the map is not finite and invertible")?;
+    for part in &varying.parts {
+        require(!matches!(part.bsdf, Bsdf::Varying(_)), "a part of a varying bsdf varies itself")?;
+        check_bsdf(&part.bsdf)?;
+        for parameter in &part.parameters {
+            let fits = match parameter {
+                Parameter::Reflectance(texture) => {
+                    texture.terms.iter().try_for_each(|term| check_spectrum(&term.spectrum))?;
+                    matches!(
+                        part.bsdf,
+                        Bsdf::Lambert { .. } | Bsdf::OrenNayar { .. } | Bsdf::Phong { .. } | Bsdf::Mirror { .. }
+                    )
+                }
+                Parameter::Sigma(_) => matches!(part.bsdf, Bsdf::OrenNayar { .. }),
+                Parameter::Exponent(_) => matches!(part.bsdf, Bsdf::Phong { .. }),
+                Parameter::Roughness(_) => {
+                    matches!(part.bsdf, Bsdf::RoughConductor { .. } | Bsdf::RoughDielectric { .. })
+                }
+            };
+            require(fits, "a bsdf has no such parameter")?;
+        }
+    }
+    Ok(())
 }
 
 fn check_medium(medium: &Medium) -> Check {

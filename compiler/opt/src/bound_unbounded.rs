@@ -10,7 +10,7 @@
 //! Rewrites: `half_space_to_box`, `infinite_cylinder_to_cylinder`.
 
 use arsc_geometry::{Aabb, DAffine3, DVec3, Shape, invert};
-use arsc_ir::{Ir, Leaf, NodeId, NodeKind};
+use arsc_ir::{Bsdf, Ir, Leaf, NodeId, NodeKind};
 
 use crate::bounds::bounds;
 use crate::pipeline::Log;
@@ -21,9 +21,15 @@ pub(crate) fn run(mut ir: Ir, log: &mut Log) -> Ir {
         return ir;
     }
     let contexts = contexts(&ir, &bounds(&ir));
+    let is_varying = |bsdf: Option<u32>| bsdf.is_some_and(|bsdf| matches!(ir.bsdfs[bsdf as usize], Bsdf::Varying(_)));
+    let varies: Vec<bool> = ir.materials.iter().map(|material| is_varying(material.bsdf)).collect();
     for (node, context) in ir.nodes.iter_mut().zip(&contexts) {
         let NodeKind::Leaf(leaf) = &mut node.kind else { continue };
-        let Leaf::Solid { shape, parent_from_object, .. } = &mut **leaf else { continue };
+        let Leaf::Solid { shape, parent_from_object, material } = &mut **leaf else { continue };
+        // Textures count on the shape's own coordinates.
+        if material.is_some_and(|material| varies[material.0 as usize]) {
+            continue;
+        }
         if shape.is_bounded() || !context.is_finite() || context.is_empty() {
             continue;
         }

@@ -77,15 +77,23 @@ struct Filling<'a, 'b> {
 }
 
 impl Filling<'_, '_> {
-    fn interior_of(&self, material: MaterialId) -> Interior {
+    fn interior_of(&mut self, material: MaterialId) -> Interior {
         let material = &self.ir.materials[material.0 as usize];
         let bsdf = material.bsdf.map(|bsdf| &self.ir.bsdfs[bsdf as usize]);
         let transmissive = bsdf.map_or(material.medium.is_some(), Bsdf::is_transmissive);
         if !transmissive {
             return Interior::default();
         }
-        let index = material.bsdf.filter(|_| bsdf.is_some_and(Bsdf::has_index));
-        Interior { index, medium: material.medium, transmissive }
+        let medium = material.medium;
+        let index = match bsdf {
+            // Of what varies, the interface is the same wherever the texture lies.
+            Some(Bsdf::Varying(_)) => {
+                let interface = bsdf.and_then(Bsdf::interface).cloned();
+                interface.map(|interface| position_or_push(&mut self.ir.bsdfs, interface))
+            }
+            bsdf => material.bsdf.filter(|_| bsdf.is_some_and(Bsdf::has_index)),
+        };
+        Interior { index, medium, transmissive }
     }
 
     /// The parts below a node, in the order of precedence. Children first: nothing recurses.

@@ -119,6 +119,10 @@ impl Structural for Bsdf {
             }
             Bsdf::Retarder { retardance, angle } => hash_all(&[*retardance, *angle], hasher),
             Bsdf::Depolariser { transmittance } => transmittance.structural_hash(hasher),
+            Bsdf::Varying(varying) => {
+                varying.parts.iter().for_each(|part| part.bsdf.structural_hash(hasher));
+                hash_all(&varying.texture_from_object.to_cols_array(), hasher);
+            }
         }
     }
 }

@@ -59,6 +59,7 @@ mod share_subtrees;
 mod split_environments;
 mod split_lights;
 mod split_union;
+mod texture_space;
 
 pub use counts::Counts;
 pub use normal_form::check_normal_form;

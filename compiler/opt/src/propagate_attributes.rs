@@ -16,6 +16,9 @@
 //! What is attached to a face of primitives (`with_face`) wins over what is attached to the whole, nearest first, but not
 //! over an `override`. A cut wall has no such faces: it is covered as a whole.
 //!
+//! Textures stick to what they are attached to: a bsdf that varies with places in its own space is followed from where it
+//! was attached, through the transforms below, to the object space of the leaf ([`crate::texture_space`]).
+//!
 //! Rewrites: `attach`, `override`, `cut_with`, `inherit`, `distribute_inherit`.
 
 use arsc_diagnostics::Span;
@@ -25,6 +28,7 @@ use rustc_hash::FxHashMap;
 
 use crate::intern::Interner;
 use crate::pipeline::Log;
+use crate::texture_space::{TextureSpaces, inverse};
 
 /// What surrounds a node: the attributes that reach it from outside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -115,7 +119,7 @@ struct Propagation<'a, 'b> {
     memo: FxHashMap<(NodeId, State), NodeId>,
     tasks: Vec<Task>,
     results: Vec<NodeId>,
-    bsdf: Vec<u32>,
+    bsdfs: TextureSpaces,
     emitter: Vec<u32>,
     medium: Vec<u32>,
     materials: Interner<Material>,
@@ -123,8 +127,6 @@ struct Propagation<'a, 'b> {
 }
 
 pub(crate) fn run(ir: Ir, log: &mut Log) -> Ir {
-    let mut bsdfs = Interner::new();
-    let bsdf = ir.bsdfs.iter().map(|bsdf| bsdfs.intern(bsdf.clone())).collect();
     let mut emitters = Interner::new();
     let emitter = ir.emitters.iter().map(|emitter| emitters.intern(emitter.clone())).collect();
     let mut media = Interner::new();
@@ -139,7 +141,7 @@ pub(crate) fn run(ir: Ir, log: &mut Log) -> Ir {
         faces: vec![Vec::new()],
         tasks: vec![Task::Enter { node: ir.root, state: State::default() }],
         results: Vec::new(),
-        bsdf,
+        bsdfs: TextureSpaces::new(&ir.bsdfs),
         emitter,
         medium,
         materials: Interner::new(),
@@ -150,10 +152,11 @@ pub(crate) fn run(ir: Ir, log: &mut Log) -> Ir {
     }
     let root = propagation.pop();
     let (nodes, materials) = (propagation.out, propagation.materials.values);
+    let bsdfs = propagation.bsdfs.into_values();
     Ir {
         nodes,
         root,
-        bsdfs: bsdfs.values,
+        bsdfs,
         emitters: emitters.values,
         media: media.values,
         materials,
@@ -239,6 +242,11 @@ impl Propagation<'_, '_> {
                 let state = self.attach(state, *attributes, *precedence);
                 self.tasks.push(Task::Enter { node: *child, state });
             }
+            NodeKind::Transform { parent_from_child, child } => {
+                self.tasks.push(Task::Rebuild { node: id, state });
+                let state = self.moved(state, parent_from_child);
+                self.tasks.push(Task::Enter { node: *child, state });
+            }
             NodeKind::Difference(operands) if operands.len() > 1 => {
                 self.tasks.push(Task::Minuend { node: id, state });
                 self.tasks.push(Task::Enter { node: operands[0], state });
@@ -280,11 +288,18 @@ impl Propagation<'_, '_> {
         NodeId(self.out.len() as u32 - 1)
     }
 
-    fn interior_of(&self, kind: &NodeKind) -> Interior {
+    /// Materials of interiors are in the node's own space.
+    fn interior_of(&mut self, kind: &NodeKind) -> Interior {
         match kind {
             NodeKind::Leaf(leaf) => match **leaf {
-                Leaf::Solid { material: Some(material), .. } => Interior::One(material),
+                Leaf::Solid { material: Some(material), ref parent_from_object, .. } => {
+                    Interior::One(self.moved_material(material, &inverse(parent_from_object)))
+                }
                 _ => Interior::Empty,
+            },
+            NodeKind::Transform { parent_from_child, child } => match self.interior[child.index()] {
+                Interior::One(material) => Interior::One(self.moved_material(material, &inverse(parent_from_child))),
+                other => other,
             },
             NodeKind::Union(operands) | NodeKind::Group(operands) => {
                 operands.iter().fold(Interior::Empty, |sum, operand| match (sum, self.interior[operand.index()]) {
@@ -336,6 +351,10 @@ impl Propagation<'_, '_> {
         let entry = &mut faces[at];
         entry.bsdf = attributes.bsdf.or(entry.bsdf);
         entry.emitter = attributes.emitter.or(entry.emitter);
+        self.face_list(faces)
+    }
+
+    fn face_list(&mut self, faces: Vec<FaceAttributes>) -> u32 {
         let known = self.faces.iter().rposition(|list| *list == faces);
         known.unwrap_or_else(|| {
             self.faces.push(faces);
@@ -359,9 +378,10 @@ impl Propagation<'_, '_> {
 
     fn leaf(&mut self, leaf: &Leaf, state: &State) -> Leaf {
         let mut leaf = leaf.clone();
-        let own = match &leaf {
-            Leaf::Solid { material, .. } | Leaf::Surface { material, .. } => *material,
-        };
+        let (Leaf::Solid { material, parent_from_object, .. } | Leaf::Surface { material, parent_from_object, .. }) =
+            &leaf;
+        let own = *material;
+        let state = &self.moved(*state, parent_from_object);
         let own = own.map(|id| &self.source.materials[id.0 as usize]);
         let forced = state.forced;
         let mut bsdf = own.and_then(|own| own.bsdf).or(state.attached.bsdf);
@@ -412,12 +432,42 @@ impl Propagation<'_, '_> {
     /// The material of these entries of the source's tables.
     fn material(&mut self, bsdf: Option<u32>, emitter: Option<u32>, medium: Option<u32>) -> MaterialId {
         MaterialId(self.materials.intern(Material {
-            bsdf: bsdf.map(|bsdf| self.bsdf[bsdf as usize]),
+            bsdf: bsdf.map(|bsdf| self.bsdfs.index(bsdf)),
             emitter: emitter.map(|emitter| self.emitter[emitter as usize]),
             medium: medium.map(|medium| self.medium[medium as usize]),
             inside: None,
             faces: Vec::new(),
         }))
+    }
+
+    /// What surrounds a node, for its child or the object under its map.
+    fn moved(&mut self, mut state: State, parent_from_child: &DAffine3) -> State {
+        if !self.bsdfs.any_local() {
+            return state;
+        }
+        for attributes in [&mut state.attached, &mut state.forced] {
+            attributes.bsdf = attributes.bsdf.map(|bsdf| self.bsdfs.moved(bsdf, parent_from_child));
+            if let Some(CutRule::Bsdf(bsdf)) = &mut attributes.cut {
+                *bsdf = self.bsdfs.moved(*bsdf, parent_from_child);
+            }
+        }
+        let mut faces = self.faces[state.faces as usize].clone();
+        for bsdf in faces.iter_mut().filter_map(|entry| entry.bsdf.as_mut()) {
+            *bsdf = self.bsdfs.moved(*bsdf, parent_from_child);
+        }
+        state.faces = self.face_list(faces);
+        state.cutting = state.cutting.map(|cut| cut.map(|id| self.moved_material(id, parent_from_child)));
+        state.cover = state.cover.map(|id| self.moved_material(id, parent_from_child));
+        state
+    }
+
+    /// A finished material in the space of a child.
+    fn moved_material(&mut self, id: MaterialId, parent_from_child: &DAffine3) -> MaterialId {
+        let material = &self.materials.values[id.0 as usize];
+        let Some(bsdf) = material.bsdf else { return id };
+        let bsdf = self.bsdfs.moved_index(bsdf, parent_from_child);
+        let material = Material { bsdf: Some(bsdf), ..material.clone() };
+        MaterialId(self.materials.intern(material))
     }
 
     /// A material with these faces instead of its own.
@@ -446,15 +496,17 @@ impl Propagation<'_, '_> {
             self.tasks.push(Task::SubtractNext { node: id, operand: 1, state: inner });
             return;
         }
-        let inner = self.cutting(inner, minuend);
+        let inner = self.cutting(inner, minuend, None);
         self.tasks.push(Task::Rebuild { node: id, state });
         self.tasks.extend(operands[1..].iter().rev().map(|&node| Task::Enter { node, state: inner }));
     }
 
     /// The state for what is subtracted from a finished node.
-    fn cutting(&mut self, mut state: State, minuend: NodeId) -> State {
+    fn cutting(&mut self, mut state: State, minuend: NodeId, minuend_from_here: Option<&DAffine3>) -> State {
         let material = match self.interior[minuend.index()] {
-            Interior::One(material) => Some(material),
+            Interior::One(material) => {
+                Some(minuend_from_here.map_or(material, |map| self.moved_material(material, map)))
+            }
             Interior::Empty | Interior::Mixed => None,
         };
         state.cutting = Some(material);
@@ -500,7 +552,7 @@ impl Propagation<'_, '_> {
         let kind = self.out[minuend.index()].kind.clone();
         match kind {
             _ if self.interior[minuend.index()] != Interior::Mixed => {
-                let state = self.cutting(state, minuend);
+                let state = self.cutting(state, minuend, minuend_from_here.as_deref());
                 self.tasks.push(Task::Difference { minuend, minuend_from_here, origin });
                 self.tasks.push(Task::Enter { node: operand, state });
             }

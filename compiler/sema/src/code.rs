@@ -4,6 +4,7 @@
 //! captures by value. A frame never shrinks while the function runs.
 
 use arsc_diagnostics::Span;
+use arsc_syntax::ast::{BinaryOp, UnaryOp};
 
 use crate::registry::BuiltinId;
 use crate::value::Value;
@@ -197,6 +198,8 @@ pub enum Unary {
     NegVec2,
     NegVec3,
     Not,
+    /// Of what varies over a surface.
+    Texture(UnaryOp),
 }
 
 /// Typed operators. `Float` stands for every quantity that is one number.
@@ -237,6 +240,8 @@ pub enum Binary {
     Compose,
     TransformPoint,
     TransformVector,
+    /// Of what varies over a surface.
+    Texture(BinaryOp),
 }
 
 /// Conversions that keep the meaning.

@@ -49,6 +49,43 @@ impl SpectrumKind {
     }
 }
 
+/// What varies over a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TextureKind {
+    Bool,
+    Float,
+    Angle,
+    Vec2,
+    Vec3,
+    Spectrum(SpectrumKind),
+}
+
+impl TextureKind {
+    /// The type of one of its values.
+    pub const fn value_type(self) -> Type {
+        match self {
+            TextureKind::Bool => Type::Bool,
+            TextureKind::Float => Type::Float,
+            TextureKind::Angle => Type::Angle,
+            TextureKind::Vec2 => Type::Vec2,
+            TextureKind::Vec3 => Type::Vec3,
+            TextureKind::Spectrum(kind) => Type::Spectrum(kind),
+        }
+    }
+
+    /// The name of that type.
+    pub const fn name(self) -> &'static str {
+        match self {
+            TextureKind::Bool => "bool",
+            TextureKind::Float => "float",
+            TextureKind::Angle => "angle",
+            TextureKind::Vec2 => "vec2",
+            TextureKind::Vec3 => "vec3",
+            TextureKind::Spectrum(kind) => kind.name(),
+        }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub enum Type {
     /// Something was wrong and has been reported; agrees with everything.
@@ -74,7 +111,8 @@ pub enum Type {
     Medium,
     PhaseFunction,
     Density,
-    Texture,
+    /// A value that varies over a surface.
+    Texture(TextureKind),
     /// Closed geometry.
     Solid,
     /// Open geometry.
@@ -135,6 +173,12 @@ pub enum Class {
     SolidOperand,
     /// Bsdfs, emitters, media, bundles, and lists of these.
     Attribute,
+    /// What may vary over a surface, taken as such.
+    Textured,
+    /// Numbers, angles and vectors that may vary over a surface, taken as such.
+    TexturedNumber,
+    /// Vectors that may vary.
+    TexturedVector,
 }
 
 impl Class {
@@ -163,6 +207,11 @@ impl Class {
             Class::Geometry => matches!(ty, Solid | Surface | Shape),
             Class::UnionOperand => matches!(ty, Solid | Light | Environment),
             Class::SolidOperand => matches!(ty, Solid),
+            Class::Textured => matches!(ty, Texture(_)),
+            Class::TexturedNumber => {
+                matches!(ty, Texture(TextureKind::Float | TextureKind::Angle | TextureKind::Vec2 | TextureKind::Vec3))
+            }
+            Class::TexturedVector => matches!(ty, Texture(TextureKind::Vec2 | TextureKind::Vec3)),
             Class::Attribute => matches!(ty, Bsdf | Emitter | Medium | Attributes),
         }
     }
@@ -179,6 +228,9 @@ impl Class {
             Class::Geometry => "a solid, a surface or a list of these",
             Class::UnionOperand => "solids, lights or lists of these",
             Class::SolidOperand => "solids or lists of solids",
+            Class::Textured => "a texture of numbers, vectors or spectra",
+            Class::TexturedNumber => "a texture of numbers, angles or vectors",
+            Class::TexturedVector => "a texture of vectors",
             Class::Attribute => "a bsdf, an emitter, a medium or a list of these",
         }
     }
@@ -210,7 +262,7 @@ pub const NAMED: &[(&str, Type)] = &[
     ("medium", Type::Medium),
     ("phase_function", Type::PhaseFunction),
     ("density", Type::Density),
-    ("texture", Type::Texture),
+    ("texture", Type::Texture(TextureKind::Float)),
     ("solid", Type::Solid),
     ("surface", Type::Surface),
     ("light", Type::Light),
@@ -318,6 +370,7 @@ impl fmt::Display for Type {
                 write!(f, ") -> {}", function.result)
             }
             Type::Var(i) => write!(f, "{}", ['T', 'U', 'V', 'W'][usize::from(*i) % 4]),
+            Type::Texture(kind) => write!(f, "texture<{}>", kind.name()),
             Type::AnyOf(class) => f.write_str(class.description()),
             simple => {
                 let name = NAMED.iter().find(|(_, ty)| ty == simple).map_or("?", |(name, _)| name);

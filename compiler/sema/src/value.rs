@@ -13,6 +13,7 @@ use arsc_ir::{
 };
 
 use crate::code::{Coercion, FnId};
+use crate::eval::Texture;
 use crate::registry::BuiltinId;
 
 #[derive(Clone, Debug)]
@@ -33,6 +34,8 @@ pub enum Value {
     Fn(Arc<Closure>),
     Transform(Arc<DAffine3>),
     Spectrum(Arc<Spectrum>),
+    /// What varies over a surface; values that do not stay what they are.
+    Texture(Arc<Texture>),
     /// A shape, light or environment.
     Node(NodeId),
     Attributes(Attributes),

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
 use arsc_embree::Scene as EmbreeScene;
 use arsc_geometry::{Aabb, Foot, Placed, Ray, Shape, SurfacePoint};
@@ -408,6 +408,21 @@ impl Scene {
                 };
                 Parametrization { uv: point.uv, dpdu: point.dpdu }
             }
+        }
+    }
+
+    /// The map to the object space of a part: of its shape or surface as it was before it was placed.
+    pub fn object_from_world(&self, part: PartId) -> DAffine3 {
+        match self.parts[part.0 as usize].kind {
+            PartKind::Leaf { solid, leaf } => {
+                let member = &self.members[solid as usize];
+                let own = *member.model.leaves[leaf as usize].object_from_world();
+                member.frame.as_ref().map_or(own, |frame| own * frame.object_from_world)
+            }
+            PartKind::Surface { surface } => match &self.surfaces()[surface as usize] {
+                SurfaceModel::Flat(flat) => *flat.object_from_world(),
+                SurfaceModel::Triangles(triangles) => triangles.object_from_world(),
+            },
         }
     }
 

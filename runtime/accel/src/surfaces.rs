@@ -158,6 +158,10 @@ impl Flat {
         SurfacePoint { p, p_error: self.error_at(p), n, uv, dpdu: (dpdu - n * n.dot(dpdu)).normalize() }
     }
 
+    pub fn object_from_world(&self) -> &DAffine3 {
+        &self.inverse
+    }
+
     /// Bound on the error of a point near `p`.
     #[inline]
     fn error_at(&self, p: DVec3) -> f64 {
@@ -331,6 +335,11 @@ impl Triangles {
             mirrored: map.matrix3.determinant() < 0.0,
             cumulative_area: OnceLock::new(),
         }))
+    }
+
+    pub fn object_from_world(&self) -> DAffine3 {
+        let matrix3 = self.normal_map.transpose();
+        DAffine3 { matrix3, translation: -(matrix3 * self.map.translation) }
     }
 
     /// Number of triangles.

@@ -2,7 +2,10 @@
 
 use arsc_ir::{Environment, Ir, NodeKind};
 use arsc_render::bsdf::{MicrofacetShape, Microfacets};
-use arsc_render::{AreaEmitter, Bsdf, Density, Material, Media, Medium, PhaseFunction};
+use arsc_render::{
+    AreaEmitter, Bsdf, Density, Material, Media, Medium, Parameter, PhaseFunction, VaryingBsdf, VaryingPart,
+};
+use arsc_spectral::DenseSpectrum;
 
 use crate::AssemblyError;
 use crate::geometry::{members, node};
@@ -10,9 +13,13 @@ use crate::geometry::{members, node};
 /// One renderer's material for each of [`Ir::materials`].
 pub fn lower(ir: &Ir) -> Result<Vec<Material>, AssemblyError> {
     let lower_one = |material: &arsc_ir::Material| {
-        let bsdf = match material.bsdf {
-            Some(index) => lower_bsdf(entry(&ir.bsdfs, index)?),
-            None => Bsdf::default(),
+        let (bsdf, varying) = match material.bsdf.map(|index| entry(&ir.bsdfs, index)).transpose()? {
+            Some(arsc_ir::Bsdf::Varying(varying)) => {
+                let varying = lower_varying(varying)?;
+                (varying.representative().clone(), Some(Box::new(varying)))
+            }
+            Some(bsdf) => (lower_bsdf(bsdf), None),
+            None => (Bsdf::default(), None),
         };
         let emitter = match material.emitter {
             Some(index) => {
@@ -32,7 +39,7 @@ pub fn lower(ir: &Ir) -> Result<Vec<Material>, AssemblyError> {
         if let Some(medium) = material.medium {
             entry(&ir.media, medium)?;
         }
-        Ok(Material { bsdf, emitter, medium: material.medium, inside })
+        Ok(Material { bsdf, emitter, medium: material.medium, inside, varying })
     };
     ir.materials.iter().map(lower_one).collect()
 }
@@ -56,6 +63,32 @@ fn lower_bsdf(bsdf: &arsc_ir::Bsdf) -> Bsdf {
         arsc_ir::Bsdf::Retarder { retardance, angle } => Bsdf::retarder(*retardance, *angle),
         arsc_ir::Bsdf::Depolariser { transmittance } => Bsdf::depolariser(transmittance),
         arsc_ir::Bsdf::Inert => Bsdf::Inert,
+        // Where a single bsdf is asked for, the first part answers; parts do not vary themselves.
+        arsc_ir::Bsdf::Varying(varying) => {
+            varying.parts.first().map_or_else(Bsdf::default, |part| lower_bsdf(&part.bsdf))
+        }
+    }
+}
+
+fn lower_varying(varying: &arsc_ir::Varying) -> Result<VaryingBsdf, AssemblyError> {
+    let part = |part: &arsc_ir::Part| VaryingPart {
+        weight: part.weight.clone(),
+        bsdf: lower_bsdf(&part.bsdf),
+        parameters: part.parameters.iter().map(lower_parameter).collect(),
+    };
+    let parts = varying.parts.iter().map(part).collect();
+    VaryingBsdf::new(parts, varying.texture_from_object).ok_or(AssemblyError::NotNormal("a varying bsdf has no parts"))
+}
+
+fn lower_parameter(parameter: &arsc_ir::Parameter) -> Parameter {
+    match parameter {
+        arsc_ir::Parameter::Reflectance(texture) => {
+            let term = |term: &arsc_ir::SpectrumTerm| (term.weight.clone(), DenseSpectrum::new(&term.spectrum));
+            Parameter::Reflectance(texture.terms.iter().map(term).collect())
+        }
+        arsc_ir::Parameter::Sigma(sigma) => Parameter::Sigma(sigma.clone()),
+        arsc_ir::Parameter::Exponent(exponent) => Parameter::Exponent(exponent.clone()),
+        arsc_ir::Parameter::Roughness(alpha) => Parameter::Roughness(alpha.clone()),
     }
 }
 

@@ -101,7 +101,10 @@ pub fn incident_radiance<P: Polarisation>(
             break;
         }
         let pair = CAMERA_PAIRS + EVENT_PAIRS * depth;
-        let event = Event::new(world, &hit, wo, &world.material(&hit).bsdf);
+        let mut u_lobe = sampler.pair(pair + BSDF_LOBE);
+        let mut owned = None;
+        let bsdf = world.bsdf(&hit, &mut u_lobe[0], wavelengths, &mut owned);
+        let event = Event::new(world, &hit, wo, bsdf);
         if !event.bsdf.is_specular() {
             let choice = sampler.single(pair + LIGHT_CHOICE);
             let u = sampler.pair(pair + LIGHT_POINT);
@@ -109,7 +112,6 @@ pub fn incident_radiance<P: Polarisation>(
                 radiance += path.carry(&direct);
             }
         }
-        let u_lobe = sampler.pair(pair + BSDF_LOBE);
         let direction = sampler.pair(pair + BSDF_DIRECTION);
         if !event.scatter(&mut path, direction, u_lobe[0], wavelengths) {
             break;

@@ -303,11 +303,16 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
 
     /// What is beyond a wall that light goes straight through; `None` for a wall that does something.
     fn passes(&self, hit: &Hit, dir: DVec3, here: FillingId) -> Option<FillingId> {
-        let bsdf = &self.world.material(hit).bsdf;
+        let material = self.world.material(hit);
+        let bsdf = &material.bsdf;
         if !bsdf.is_transmissive() || (!hit.closed && bsdf.has_interface()) {
             return None;
         }
         let beyond = self.beyond(hit, dir);
+        if material.varying.is_some() {
+            // Some part may do something; but a wall with the same on both sides is not there.
+            return (hit.closed && beyond == here).then_some(beyond);
+        }
         let alike = bsdf.index().is_some() && self.world.interiors().alike(here, beyond);
         (!bsdf.has_interface() || beyond == here || alike).then_some(beyond)
     }
@@ -357,7 +362,8 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
 
     fn scatter_at_surface(&mut self, path: &mut Path<P>, hit: &Hit, draw: &Draw) -> bool {
         let wo = -path.ray.dir;
-        let mut bsdf = &self.world.material(hit).bsdf;
+        let (mut u_lobe, mut owned) = (draw.pair(LOBE)[0], None);
+        let mut bsdf = self.world.bsdf(hit, &mut u_lobe, &path.wavelengths, &mut owned);
         if let Some(fluorescent) = bsdf.fluorescent() {
             let [choice, shift] = draw.pair(SHIFT);
             let event = fluorescent.choose(&path.wavelengths, self.range, choice, shift);
@@ -388,7 +394,7 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
                 self.add_direct(path, &sample, value.to_world(&frame), pdf, filling);
             }
         }
-        let (u, u_lobe) = (draw.pair(DIRECTION), draw.pair(LOBE)[0]);
+        let u = draw.pair(DIRECTION);
         let sample = bsdf.sample_between::<P>(relative, local_wo, u, u_lobe, &path.wavelengths);
         let Some(sample) = sample else { return false };
         let wi = frame.to_world(sample.wi);

@@ -6,13 +6,14 @@
 //! scattered rays only.
 
 use arsc_accel::{Hit, Part, PartId, Scene};
-use arsc_spectral::{DenseSpectrum, WavelengthRange};
+use arsc_spectral::{DenseSpectrum, SampledWavelengths, WavelengthRange};
 
 use crate::bsdf::Bsdf;
 use crate::emitter::AreaEmitter;
 use crate::interiors::{FillingId, Interiors};
 use crate::light::{AliasTable, Environment, Light};
 use crate::medium::Medium;
+use crate::varying::VaryingBsdf;
 
 /// Scattering and emission of one material; indexed by [`arsc_accel::MaterialIndex`].
 #[derive(Clone, Debug, Default)]
@@ -23,6 +24,16 @@ pub struct Material {
     pub medium: Option<u32>,
     /// Index of refraction behind the wall, where it is not the bsdf's own.
     pub inside: Option<DenseSpectrum>,
+    /// In place of `bsdf`, which is then the part that answers for all where there is no hit.
+    pub varying: Option<Box<VaryingBsdf>>,
+}
+
+impl Material {
+    /// All that a hit may find.
+    fn bsdfs(&self) -> impl Iterator<Item = &Bsdf> {
+        let parts = self.varying.iter().flat_map(|varying| varying.bsdfs());
+        std::iter::once(&self.bsdf).chain(parts)
+    }
 }
 
 /// Participating media of a scene.
@@ -84,7 +95,7 @@ impl World {
         let needed = geometry.parts().iter().enumerate().filter_map(shown).max().unwrap_or(0);
         materials.resize_with(materials.len().max(needed), Material::default);
         let interiors = Interiors::new(&geometry, &materials, media.atmosphere);
-        let fluoresces = materials.iter().any(|material| material.bsdf.fluorescent().is_some());
+        let fluoresces = materials.iter().flat_map(Material::bsdfs).any(|bsdf| bsdf.fluorescent().is_some());
         let mut world = World {
             media: media.media,
             interiors,
@@ -214,6 +225,23 @@ impl World {
     #[inline]
     pub fn material(&self, hit: &Hit) -> &Material {
         &self.materials[hit.material.0 as usize]
+    }
+
+    /// The bsdf at a hit, in `owned` where it is made there. `u` chooses among the parts of a mixture, and what is left of it
+    /// is uniform again; all that happens at the hit must see the same choice.
+    #[inline]
+    pub(crate) fn bsdf<'a>(
+        &'a self,
+        hit: &Hit,
+        u: &mut f64,
+        wavelengths: &SampledWavelengths,
+        owned: &'a mut Option<Bsdf>,
+    ) -> &'a Bsdf {
+        let material = self.material(hit);
+        match &material.varying {
+            None => &material.bsdf,
+            Some(varying) => varying.at(&self.geometry, hit, u, wavelengths, owned),
+        }
     }
 
     #[inline]

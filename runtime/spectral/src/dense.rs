@@ -13,6 +13,9 @@ use crate::{SampledSpectrum, SampledWavelengths, Spectrum, WavelengthRange};
 pub enum DenseSpectrum {
     Constant(f32),
     Table(Box<[f32; KNOTS]>),
+    /// Known at the four wavelengths of one path alone, which are all that may be asked for: what varies over a surface, at
+    /// a hit. Elsewhere it counts as its hero's value.
+    Sampled(SampledSpectrum),
 }
 
 impl DenseSpectrum {
@@ -40,6 +43,7 @@ impl DenseSpectrum {
         match &mut self {
             DenseSpectrum::Constant(value) => *value = value.clamp(low, high),
             DenseSpectrum::Table(table) => table.iter_mut().for_each(|value| *value = value.clamp(low, high)),
+            DenseSpectrum::Sampled(values) => *values = values.map(|value| value.clamp(low, high)),
         }
         self
     }
@@ -53,6 +57,7 @@ impl DenseSpectrum {
                 let [a, b, c, d] = wavelengths.knots;
                 SampledSpectrum(Vec4::new(table[a as usize], table[b as usize], table[c as usize], table[d as usize]))
             }
+            DenseSpectrum::Sampled(values) => *values,
         }
     }
 
@@ -61,6 +66,7 @@ impl DenseSpectrum {
         match self {
             DenseSpectrum::Constant(value) => *value,
             DenseSpectrum::Table(table) => table[nearest_knot(lambda_nm as f32) as usize],
+            DenseSpectrum::Sampled(values) => values.hero(),
         }
     }
 
@@ -72,6 +78,7 @@ impl DenseSpectrum {
     pub fn integral(&self, range: &WavelengthRange) -> f64 {
         match self {
             DenseSpectrum::Constant(value) => f64::from(*value) * range.width_nm(),
+            DenseSpectrum::Sampled(values) => f64::from(values.hero()) * range.width_nm(),
             DenseSpectrum::Table(table) => {
                 // The part of each cell that lies within the range, and the middle of that part.
                 let cell = |i: usize| {

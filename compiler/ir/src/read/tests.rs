@@ -266,3 +266,44 @@ fn deep_nesting_is_an_error() {
     let text = format!("ir 1\nbsdf b0 = mirror(reflectance: {}", "scaled(2.0, ".repeat(100_000));
     assert!(read(&text).expect_err("too deep").message.contains("nested"));
 }
+
+/// Every operation, input and parameter of what varies.
+#[test]
+fn what_varies_reads_back() {
+    use arsc_texture::{Binary, Input, Unary};
+    let mut steps: Vec<String> = Input::ALL.iter().map(|input| input.name().to_owned()).collect();
+    steps.push("-2.5".into());
+    steps.extend(Unary::ALL.iter().map(|op| format!("{}(3)", op.name())));
+    steps.extend(Binary::ALL.iter().map(|op| format!("{}(3, 17)", op.name())));
+    steps.push("select(1, 2, 3)".into());
+    steps.push("noise(0, 1, 2, seed: 4294967295)".into());
+    steps.push("fbm(0, 1, 2, seed: 1, octaves: 6, lacunarity: 2.0, gain: 0.5)".into());
+    steps.push("turbulence(0, 1, 2, seed: 1, octaves: 6, lacunarity: 2.0, gain: 0.5)".into());
+    let long = format!("expression({})", steps.join(", "));
+    let rough = "rough_conductor(eta: constant(0.2), k: constant(3.0), distribution: ggx, alpha: [0.1, 0.1])";
+    let text = format!(
+        "ir 1\nbsdf b0 = varying(part(oren_nayar(reflectance: constant(0.5), sigma: 0.0), weight: {long}, reflectance: \
+         blend(term(expression(u), constant(1.0)), term({long}, constant(0.5))), sigma: expression(v)), \
+         part(phong(reflectance: constant(0.5), exponent: 1.0), weight: expression(1.0), exponent: expression(u)), \
+         part({rough}, weight: expression(1.0), roughness: expression(u), across: expression(v)), \
+         at: [1.0, 2.0, 3.0])\n%0 = sphere(radius: 1.0) @0:0..1\nroot %0\n"
+    );
+    let ir = read(&text).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(ir.to_string(), text);
+    assert_eq!(verify(&ir), Ok(()));
+    let broken = [
+        ("expression(u)", "expression(add(0, 0))", "an operand does not stand before its step"),
+        ("expression(u)", "expression()", "an expression has no steps"),
+        ("expression(u)", "expression(inf)", "`inf` is no input"),
+        ("octaves: 6", "octaves: 60", "a noise has too many octaves"),
+        ("part(phong", "part(varying", "lacks an operand"),
+        ("weight: expression(1.0), exponent", "exponent", "`part` lacks `weight`"),
+    ];
+    for (from, to, wanted) in broken {
+        let error = read(&text.replacen(from, to, 1)).expect_err(to);
+        assert!(error.message.contains(wanted), "{to}: {error}");
+    }
+    let wrong = text.replacen("sigma: expression(v)", "exponent: expression(v)", 1);
+    let found = verify(&read(&wrong).unwrap()).unwrap_err();
+    assert_eq!(found[0].message, "a bsdf has no such parameter");
+}

@@ -222,6 +222,19 @@ impl Checker<'_> {
                 }
             }
         }
+        let mut overload = (id, builtin, variables);
+        if found.iter().flatten().any(|(value, _)| self.known(&value.ty).holds_texture())
+            && let Some((id, builtin)) = self.registry.texture_overload(builtin)
+        {
+            let variables = self.variables(builtin);
+            for (param, values) in builtin.params.iter().zip(&found) {
+                if let Type::Var(i) = param.ty {
+                    values.iter().for_each(|(value, _)| self.join_variable(&variables[usize::from(i)], &value.ty));
+                }
+            }
+            overload = (id, builtin, variables);
+        }
+        let (id, builtin, variables) = overload;
         let mut args = Vec::with_capacity(found.len());
         let mut spans = Vec::with_capacity(found.len());
         for (i, values) in found.into_iter().enumerate() {

@@ -8,7 +8,7 @@ use arsc_syntax::ast;
 
 use super::{Checker, Typed};
 use crate::code::{Code, Coercion};
-use crate::types::{Class, SpectrumKind, Type};
+use crate::types::{Class, SpectrumKind, TextureKind, Type};
 
 /// Parts of one type, its own parts' included.
 const MAX_TYPE_PARTS: usize = 1_000;
@@ -122,6 +122,14 @@ impl Checker<'_> {
                 let vector = if parts.len() == 2 { Type::Vec2 } else { Type::Vec3 };
                 (vector, Conversion::By(Coercion::TupleToVec))
             }
+            (Some(Class::Textured | Class::TexturedNumber | Class::TexturedVector), ty) => {
+                let kind = self.known(ty).texture_kind();
+                let conversion = match ty {
+                    Type::Int => Conversion::By(Coercion::IntToFloat),
+                    _ => Conversion::Same,
+                };
+                (kind.map_or_else(|| ty.clone(), Type::Texture), conversion)
+            }
             _ => (ty.clone(), Conversion::Same),
         }
     }
@@ -146,6 +154,13 @@ impl Checker<'_> {
             (Int | Float, Spectrum(kind)) if *kind != SpectrumKind::Emission => {
                 Some(Conversion::By(Coercion::Constant(*kind)))
             }
+            (Int | Float | Texture(TextureKind::Float), Texture(TextureKind::Spectrum(kind)))
+                if *kind != SpectrumKind::Emission =>
+            {
+                Some(Conversion::By(Coercion::Constant(*kind)))
+            }
+            (Int, Texture(TextureKind::Float)) => Some(Conversion::By(Coercion::IntToFloat)),
+            (from, Texture(wanted)) => (self.known(from).texture_kind()? == *wanted).then_some(Conversion::Same),
             (Tuple(parts), Vec2) if parts.len() == 2 && self.is_numeric_tuple(&from) => {
                 Some(Conversion::By(Coercion::TupleToVec))
             }
@@ -239,7 +254,13 @@ impl Checker<'_> {
     }
 
     pub(super) fn mismatch(&mut self, found: &Type, wanted: &Type, span: Span, role: Option<&str>) {
-        let (found, wanted) = (self.known(found), self.known(wanted));
+        let (found, mut wanted) = (self.known(found), self.known(wanted));
+        if let Type::Texture(kind) = wanted
+            && !found.holds_texture()
+        {
+            // Who does not think of textures need not hear of them.
+            wanted = kind.value_type();
+        }
         let open = |ty: &Type| matches!(ty, Type::Surface) || matches!(ty, Type::List(t) if **t == Type::Surface);
         if wanted == Type::Solid && open(&found) {
             return self.not_a_solid(&found, span);
@@ -297,6 +318,13 @@ fn advice(found: &Type, wanted: &Type) -> Option<String> {
     use Type::*;
     let text = match (found, wanted) {
         (Int | Float, Angle) => "write the unit: `45deg` or `0.5rad`",
+        (Texture(TextureKind::Bool), Bool) => {
+            "what varies over a surface is chosen by `select(condition, then, otherwise)` from std.texture"
+        }
+        (Texture(TextureKind::Float), Texture(TextureKind::Angle)) => "multiply by a unit: `x * 1deg` or `x * 1rad`",
+        (Texture(_), wanted) if wanted.texture_kind().is_none() || !wanted.holds_texture() => {
+            "this varies over a surface, but only one value can stand here"
+        }
         (Int | Float, Wavelength) => "write the unit: `550nm`",
         (Int | Float, Temperature) => "write the unit: `6500K`",
         (Angle, Int | Float) => "`degrees(angle)` and `radians(angle)` give numbers",

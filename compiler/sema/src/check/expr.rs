@@ -8,7 +8,7 @@ use super::names::{Meaning, with_suggestion};
 use super::{Checker, Typed};
 use crate::code::{Code, FnId};
 use crate::registry::{BuiltinId, PRELUDE, choices};
-use crate::types::Type;
+use crate::types::{TextureKind, Type};
 use crate::value::{Closure, Value};
 
 impl Checker<'_> {
@@ -156,10 +156,13 @@ impl Checker<'_> {
         }
         let base_value = self.expr(base, None);
         let ty = self.shallow(&base_value.ty);
+        let varying = || Type::Texture(TextureKind::Float);
         let fields: Vec<(String, Type)> = match &ty {
             Type::Error => return Typed::error(),
             Type::Record(fields) => fields.to_vec(),
             Type::Vec2 => ["x", "y"].map(|name| (name.to_owned(), Type::Float)).to_vec(),
+            Type::Texture(TextureKind::Vec2) => ["x", "y"].map(|name| (name.to_owned(), varying())).to_vec(),
+            Type::Texture(TextureKind::Vec3) => ["x", "y", "z"].map(|name| (name.to_owned(), varying())).to_vec(),
             ty if ty.is_vec3_like() => ["x", "y", "z"].map(|name| (name.to_owned(), Type::Float)).to_vec(),
             _ => Vec::new(),
         };

@@ -17,6 +17,7 @@ mod names;
 mod operator;
 mod pattern;
 mod scope;
+mod texture;
 mod typeexpr;
 mod units;
 mod unused;

@@ -4,9 +4,9 @@ use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Diagnostic, Span};
 use arsc_syntax::ast::{self, BinaryOp, UnaryOp};
 
-use super::{Checker, Typed};
+use super::{Checker, Typed, texture};
 use crate::code::{Binary, Code, Coercion, Unary};
-use crate::types::{Class, SpectrumKind, Type};
+use crate::types::{Class, SpectrumKind, TextureKind, Type};
 
 /// An instruction, the types to which its operands are converted, and its result.
 struct Rule {
@@ -164,6 +164,10 @@ impl Checker<'_> {
             (UnaryOp::Neg, ty) if ty.is_float_like() => (Unary::NegFloat, ty.clone()),
             (UnaryOp::Neg, Type::Vec2) => (Unary::NegVec2, ty),
             (UnaryOp::Neg, Type::Vec3 | Type::Direction) => (Unary::NegVec3, ty),
+            (UnaryOp::Not, Type::Texture(TextureKind::Bool)) => (Unary::Texture(op), ty),
+            (UnaryOp::Neg, Type::Texture(kind)) if !matches!(kind, TextureKind::Bool | TextureKind::Spectrum(_)) => {
+                (Unary::Texture(op), ty)
+            }
             (UnaryOp::Neg, Type::Tuple(_)) if as_vector(&self.known(&ty)).is_some() => {
                 return self.negated_tuple(operand, op_span, operand_span);
             }
@@ -198,7 +202,12 @@ impl Checker<'_> {
         span: Span,
     ) -> Typed {
         if let BinaryOp::And | BinaryOp::Or = op {
-            let (a, b) = (Box::new(self.expect(left, &Type::Bool)), Box::new(self.expect(right, &Type::Bool)));
+            let (a, b) = (self.expr(left, Some(&Type::Bool)), self.expr(right, Some(&Type::Bool)));
+            if self.shallow(&a.ty).holds_texture() || self.shallow(&b.ty).holds_texture() {
+                return self.texture_operation(op, op_span, (a, left.span), (b, right.span));
+            }
+            let a = Box::new(self.coerce(a, &Type::Bool, left.span, None));
+            let b = Box::new(self.coerce(b, &Type::Bool, right.span, None));
             return Typed::new(if op == BinaryOp::And { Code::And(a, b) } else { Code::Or(a, b) }, Type::Bool);
         }
         let a = self.expr(left, None);
@@ -212,6 +221,9 @@ impl Checker<'_> {
                 self.needs_type(at);
                 return Typed::error();
             }
+        }
+        if ta.holds_texture() || tb.holds_texture() {
+            return self.texture_operation(op, op_span, (a, left.span), (b, right.span));
         }
         if let BinaryOp::Eq | BinaryOp::Ne = op {
             return self.equality(op, op_span, (a, left.span), (b, right.span));
@@ -235,6 +247,16 @@ impl Checker<'_> {
         // Geometry remembers the whole expression, arithmetic the operator that failed.
         let at = if found.result == Type::Solid { span } else { op_span };
         Typed::new(Code::Binary { op: found.op, left: Box::new(a), right: Box::new(b), span: at }, found.result)
+    }
+
+    fn texture_operation(&mut self, op: BinaryOp, op_span: Span, a: (Typed, Span), b: (Typed, Span)) -> Typed {
+        let (ta, tb) = (self.known(&a.0.ty), self.known(&b.0.ty));
+        let Some([_, _, result]) = texture::rule(op, &ta, &tb) else {
+            self.wrong_operands(op, op_span, (&ta, a.1), (&tb, b.1));
+            return Typed::new(Code::Error, result_anyway(op));
+        };
+        let (left, right) = (Box::new(a.0.code), Box::new(b.0.code));
+        Typed::new(Code::Binary { op: Binary::Texture(op), left, right, span: op_span }, Type::Texture(result))
     }
 
     fn lists(&mut self, op: BinaryOp, a: &Type, b: &Type) -> Option<Rule> {

@@ -83,12 +83,25 @@ impl<'a> Checker<'a> {
             };
             return Type::list(self.type_expr(element));
         }
-        if name.name == "texture" && args.len() == 1 {
-            return Type::Texture;
+        if let ("texture", [of]) = (name.name.as_str(), args) {
+            let of_span = of.span;
+            let of = self.type_expr(of);
+            return match of.texture_kind() {
+                Some(kind) if !matches!(of, Type::Texture(_) | Type::Int | Type::Tuple(_)) => Type::Texture(kind),
+                _ if of.is_error() => of,
+                _ => {
+                    let message = format!("there are no textures of `{of}`");
+                    let diagnostic = Diagnostic::new(codes::UNKNOWN_TYPE, message).label(of_span, "does not vary");
+                    self.report(
+                        diagnostic.help("textures are of `bool`, `float`, `angle`, vectors or a kind of spectrum"),
+                    );
+                    Type::Error
+                }
+            };
         }
         if !args.is_empty() {
             let message = format!("`{}` takes no type arguments", name.name);
-            self.error(codes::UNKNOWN_TYPE, message, span, "only `list` does");
+            self.error(codes::UNKNOWN_TYPE, message, span, "only `list` and `texture` do");
             return Type::Error;
         }
         let alias = self.scopes[self.cx.module].defs.contains_key(&name.name);

@@ -7,7 +7,7 @@ use arsc_diagnostics::{Diagnostic, Span};
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
-use super::{Eval, GlobalState, MAX_DEPTH, Machine, limit};
+use super::{Eval, GlobalState, MAX_DEPTH, Machine, is_varying, limit};
 use crate::code::{Arm, Code, Coercion, Entry, For, GlobalId, Site};
 use crate::registry::BuiltinId;
 use crate::types::SpectrumKind;
@@ -136,6 +136,7 @@ impl Machine<'_> {
         Ok(match self.eval(base)? {
             Value::Vec2(v) => Value::Float(v[i as usize]),
             Value::Vec3(v) => Value::Float(v[i as usize]),
+            Value::Texture(texture) => self.scalar_value(texture.component(i as usize)),
             other => other.as_tuple()[i as usize].clone(),
         })
     }
@@ -266,6 +267,8 @@ impl Machine<'_> {
                     _ => Value::Vec3(DVec3::new(t[0].as_float(), t[1].as_float(), t[2].as_float())),
                 }
             }
+            // Greys that vary.
+            Coercion::Constant(_) if is_varying(&value) => value,
             Coercion::Constant(kind) => {
                 let x = value.as_float();
                 let low_enough = if *kind == SpectrumKind::RefractiveIndex { x <= 0.0 } else { x < 0.0 };

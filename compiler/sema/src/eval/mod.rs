@@ -12,6 +12,7 @@ mod operator;
 mod params;
 mod pattern;
 mod tables;
+mod texture;
 
 use std::sync::Arc;
 
@@ -21,6 +22,7 @@ use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Code as DiagnosticCode, Diagnostic, SourceId, Span};
 use arsc_geometry::DAffine3;
 use arsc_ir::{Bsdf, Emitter, Leaf, Medium, Node, NodeId, NodeKind, Shape, Surface};
+use arsc_texture::ExpressionGraph;
 
 use crate::code::{GlobalId, Program, Site};
 use crate::meshes::ClosedOutcome;
@@ -30,6 +32,7 @@ use crate::{Assets, Limits};
 pub use call::default_value;
 pub use operator::{add_values, finite, scale_value};
 pub use tables::Table;
+pub use texture::{Texture, is_varying};
 
 /// A value, or what went wrong.
 pub type Eval<T = Value> = Result<T, Box<Diagnostic>>;
@@ -83,6 +86,8 @@ pub struct Machine<'a> {
     tables: FxHashMap<(SourceId, String), Arc<Table>>,
     /// By path.
     pub(crate) closed_meshes: FxHashMap<Arc<str>, ClosedOutcome>,
+    /// What varies over surfaces.
+    pub expressions: ExpressionGraph,
     pub nodes: Vec<Node>,
     pub bsdfs: Vec<Bsdf>,
     pub emitters: Vec<Emitter>,
@@ -111,6 +116,7 @@ impl<'a> Machine<'a> {
             collected: Vec::new(),
             tables: FxHashMap::default(),
             closed_meshes: FxHashMap::default(),
+            expressions: ExpressionGraph::default(),
             nodes: Vec::new(),
             bsdfs: Vec::new(),
             emitters: Vec::new(),

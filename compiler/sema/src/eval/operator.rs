@@ -5,6 +5,7 @@ use std::sync::Arc;
 use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Diagnostic, Span};
 use arsc_ir::{NodeKind, Spectrum};
+use arsc_syntax::ast::UnaryOp;
 
 use super::{Eval, Machine};
 use crate::code::{Binary, Unary};
@@ -94,6 +95,8 @@ impl Machine<'_> {
             Unary::NegVec2 => scale_value(a, -1.0, span),
             Unary::NegVec3 => Ok(Value::Vec3(-a.as_vec3())),
             Unary::Not => Ok(Value::Bool(!a.as_bool())),
+            Unary::Texture(UnaryOp::Neg) => Ok(self.texture_map(arsc_texture::Unary::Negate, a)),
+            Unary::Texture(UnaryOp::Not) => Ok(self.texture_map(arsc_texture::Unary::Not, a)),
         }
     }
 
@@ -116,6 +119,7 @@ impl Machine<'_> {
             Eq => Ok(Value::Bool(self.equal(a, b, span)?)),
             Ne => Ok(Value::Bool(!self.equal(a, b, span)?)),
             Lt | Le | Gt | Ge => Ok(Value::Bool(ordered(op, a, b))),
+            Texture(op) => self.texture_binary(op, a, b, span),
             Union | Intersection | Difference => self.boolean(op, a, b, span),
             _ => self.compound(op, a, b, span),
         }

@@ -1,14 +1,15 @@
 //! Attributes: what covers a surface, and attaching it.
 
 use arsc_diagnostics::codes::sema as codes;
-use arsc_ir::{Attributes, Bsdf, CutRule, Emitter, Leaf, NodeId, NodeKind, Precedence};
+use arsc_ir::{Attributes, Bsdf, CutRule, Emitter, Leaf, NodeId, NodeKind, Parameter, Precedence};
 
+use super::mixtures::with_parameters;
 use super::{Builtin, Param};
 use crate::code::Site;
 use crate::eval::{Eval, Machine};
-use crate::types::Class;
 use crate::types::SpectrumKind::{Emission, Extinction, Reflectance, RefractiveIndex};
-use crate::types::Type::{self, Angle, Bool, Float, Solid, Spectrum, Var};
+use crate::types::Type::{self, Bool, Float, Solid, Spectrum, Texture, Var};
+use crate::types::{Class, TextureKind};
 use crate::value::Value;
 
 pub(super) const MATERIAL: &str = "std.material";
@@ -17,6 +18,7 @@ pub fn builtins() -> Vec<Builtin> {
     let mut list = attaching();
     list.extend(bsdfs());
     list.extend(super::surface_models::builtins());
+    list.extend(super::mixtures::builtins());
     list.extend(not_yet());
     list
 }
@@ -184,27 +186,33 @@ pub(super) fn bsdf(m: &mut Machine<'_>, bsdf: Bsdf) -> Eval {
 
 fn bsdfs() -> Vec<Builtin> {
     let of = |name, doc| Builtin::new(name, doc).module(MATERIAL);
-    let reflectance = || Param::new("reflectance", Spectrum(Reflectance), "share of light that is scattered back");
+    let reflectance = || Param::new("reflectance", varying_reflectance(), "share of light that is scattered back");
     vec![
         of("lambert", "Ideal diffuse reflection.").param(reflectance()).runs(Type::Bsdf, |m, args, site| {
-            m.lint_reflectance(&args[0], site, 0);
-            bsdf(m, Bsdf::Lambert { reflectance: args[0].as_spectrum().as_ref().clone() })
+            let mut parameters = Vec::new();
+            let reflectance = m.reflectance_parameter(&args[0], &mut parameters, site, 0)?;
+            with_parameters(m, Bsdf::Lambert { reflectance }, parameters)
         }),
         of("oren_nayar", "Rough diffuse reflection (Oren and Nayar 1994).")
             .param(reflectance())
             .param(
-                Param::new("sigma", Angle, "standard deviation of the facets' slope").degrees(17.0).degrees_below(90.0),
+                Param::new("sigma", Texture(TextureKind::Angle), "standard deviation of the facets' slope")
+                    .degrees(17.0)
+                    .degrees_below(90.0),
             )
             .runs(Type::Bsdf, |m, args, site| {
-                m.lint_reflectance(&args[0], site, 0);
-                let reflectance = args[0].as_spectrum().as_ref().clone();
-                bsdf(m, Bsdf::OrenNayar { reflectance, sigma: args[1].as_float() })
+                let mut parameters = Vec::new();
+                let reflectance = m.reflectance_parameter(&args[0], &mut parameters, site, 0)?;
+                let at = site.args[1];
+                let sigma = m.number_parameter(&args[1], 0.0, Parameter::Sigma, &mut parameters, at)?;
+                with_parameters(m, Bsdf::OrenNayar { reflectance, sigma }, parameters)
             }),
         of("mirror", "Ideal mirror, the same at every angle.")
             .param(reflectance().default_value("1", Value::spectrum(arsc_ir::Spectrum::Constant(1.0))))
             .runs(Type::Bsdf, |m, args, site| {
-                m.lint_reflectance(&args[0], site, 0);
-                bsdf(m, Bsdf::Mirror { reflectance: args[0].as_spectrum().as_ref().clone() })
+                let mut parameters = Vec::new();
+                let reflectance = m.reflectance_parameter(&args[0], &mut parameters, site, 0)?;
+                with_parameters(m, Bsdf::Mirror { reflectance }, parameters)
             }),
         of("dielectric", "Smooth clear glass: this index inside, vacuum outside.")
             .param(
@@ -228,6 +236,11 @@ fn bsdfs() -> Vec<Builtin> {
     ]
 }
 
+/// The type of reflectances that may vary over the surface.
+pub(super) fn varying_reflectance() -> Type {
+    Texture(TextureKind::Spectrum(Reflectance))
+}
+
 fn not_yet() -> Vec<Builtin> {
     let of = |name, doc| Builtin::new(name, doc).module(MATERIAL);
     vec![
@@ -238,8 +251,5 @@ fn not_yet() -> Vec<Builtin> {
         of("phosphor", "A fluorescent surface.")
             .param(Param::new("reflectance", Spectrum(Reflectance), "without re-radiation"))
             .later(Type::Bsdf, "fluorescence"),
-        of("image_texture", "A texture from an image file.")
-            .param(Param::new("path", Type::Str, "image file, relative to the script"))
-            .later(Type::Texture, "the texture"),
     ]
 }

@@ -11,6 +11,7 @@ mod lists;
 mod materials;
 mod math;
 mod media;
+mod mixtures;
 mod outlines;
 mod param;
 mod solids;
@@ -18,6 +19,7 @@ mod spectra;
 mod surface_models;
 mod surfaces;
 mod text;
+mod textures;
 mod transforms;
 mod vectors;
 
@@ -41,6 +43,9 @@ pub struct BuiltinId(pub u32);
 
 /// The module of what needs no import.
 pub const PRELUDE: &str = "prelude";
+
+/// No module that can be imported: what builtins of the prelude become when an argument varies over a surface.
+pub const TEXTURE_OVERLOADS: &str = "texture";
 
 /// What a builtin does with its arguments, one per parameter; a variadic one gets the rest as a list.
 pub type Run = fn(&mut Machine<'_>, &[Value], &Site) -> Eval;
@@ -147,7 +152,7 @@ impl Registry {
     }
 
     fn build() -> Registry {
-        let families: [(&'static str, Family); 14] = [
+        let families: [(&'static str, Family); 16] = [
             ("Solids", solids::builtins),
             ("Surfaces", surfaces::builtins),
             ("Boolean operations", csg::builtins),
@@ -162,6 +167,8 @@ impl Registry {
             ("Numbers", math::builtins),
             ("Vectors", vectors::builtins),
             ("Text and random numbers", text::builtins),
+            ("Textures", textures::builtins),
+            ("Functions of textures", textures::overloads),
         ];
         let mut builtins = Vec::new();
         for (family, list) in families {
@@ -183,6 +190,12 @@ impl Registry {
         self.by_name.get(&(module, name)).copied()
     }
 
+    /// What a builtin of the prelude becomes when an argument varies over a surface.
+    pub fn texture_overload(&self, builtin: &Builtin) -> Option<(BuiltinId, &Builtin)> {
+        let id = self.find(TEXTURE_OVERLOADS, builtin.name).filter(|_| builtin.module == PRELUDE)?;
+        Some((id, self.builtin(id)))
+    }
+
     /// A builtin of the prelude that a std module also gives, for it belongs to its subject.
     pub fn find_prelude_of(&self, module: &str, name: &str) -> Option<BuiltinId> {
         let family = match module {
@@ -192,6 +205,7 @@ impl Registry {
             "std.light" => "Lights and environments",
             "std.solid" => "Solids",
             "std.action" => "Actions",
+            "std.texture" => "Textures",
             _ => return None,
         };
         self.find(PRELUDE, name).filter(|id| self.builtin(*id).family == family)
@@ -213,7 +227,10 @@ impl Registry {
 
     /// The std module that gives `name`, if one does.
     pub fn std_module_of(&self, name: &str) -> Option<&'static str> {
-        self.builtins.iter().find(|builtin| builtin.name == name && builtin.module != PRELUDE).map(|b| b.module)
+        self.builtins
+            .iter()
+            .find(|builtin| builtin.name == name && builtin.module.starts_with("std."))
+            .map(|b| b.module)
     }
 }
 

@@ -1,11 +1,16 @@
 //! Bsdfs of microfacets and lobes, panes and flat optical elements.
 
-use arsc_ir::{Bsdf, Distribution, Facets};
+use arsc_ir::{Bsdf, Distribution, Expression, Facets, Parameter};
+use arsc_texture::{Binary, Unary};
 
-use super::materials::{MATERIAL, bsdf};
+use super::materials::{MATERIAL, bsdf, varying_reflectance};
+use super::mixtures::with_parameters;
 use super::{Builtin, Param};
+use crate::code::Site;
+use crate::eval::{Eval, Machine, is_varying};
 use crate::types::SpectrumKind::{Extinction, Reflectance, RefractiveIndex};
-use crate::types::Type::{self, Angle, Float, Spectrum};
+use crate::types::TextureKind;
+use crate::types::Type::{self, Angle, Spectrum, Texture};
 use crate::value::Value;
 
 pub fn builtins() -> Vec<Builtin> {
@@ -30,20 +35,32 @@ fn share(name: &'static str, doc: &'static str) -> Param {
 /// How rough a surface of microfacets is.
 fn with_facets(builtin: Builtin) -> Builtin {
     builtin
-        .param(Param::new("roughness", Float, "alpha: width of the facets' slopes").float(0.1).within(0.0, 1.0))
         .param(
-            Param::new("across", Float, "alpha across the direction of growing u; else as along it")
-                .optional()
+            Param::new("roughness", Texture(TextureKind::Float), "alpha: width of the facets' slopes")
+                .float(0.1)
                 .within(0.0, 1.0),
+        )
+        .param(
+            Param::new(
+                "across",
+                Texture(TextureKind::Float),
+                "alpha across the direction of growing u; else as along it",
+            )
+            .optional()
+            .within(0.0, 1.0),
         )
         .param(
             Param::new("distribution", Type::Distribution, "of the facets' normals: `ggx`, `beckmann` or `blinn`")
                 .default_value("ggx", Value::Distribution(Distribution::Ggx)),
         )
         .param(
-            Param::new("beta", Angle, "in place of `roughness`: where Blinn's density has fallen to one half")
-                .optional()
-                .degrees_between(0.0, 60.0),
+            Param::new(
+                "beta",
+                Texture(TextureKind::Angle),
+                "in place of `roughness`: where Blinn's density has fallen to one half",
+            )
+            .optional()
+            .degrees_between(0.0, 60.0),
         )
 }
 
@@ -52,7 +69,12 @@ const MIN_BETA: f64 = 1e-4;
 
 /// From the parameters of [`with_facets`]. ln(1/2) / ln(cos beta) is Blinn's exponent n; alpha is the root of 2 / (n + 2),
 /// which makes narrow lobes of all three distributions alike.
-fn facets(args: &[Value]) -> Facets {
+fn facets(m: &mut Machine<'_>, args: &[Value], parameters: &mut Vec<Parameter>, site: &Site) -> Eval<Facets> {
+    let distribution = args[2].as_distribution();
+    if [0, 1, 3].into_iter().any(|i| is_varying(&args[i])) {
+        parameters.push(Parameter::Roughness(varying_alpha(m, args, site)?));
+        return Ok(Facets { distribution, alpha: [0.1; 2] });
+    }
     let roughness = if args[3].is_given() {
         let exponent = 0.5f64.ln() / args[3].as_float().max(MIN_BETA).cos().ln();
         (2.0 / (exponent + 2.0)).sqrt()
@@ -60,7 +82,25 @@ fn facets(args: &[Value]) -> Facets {
         args[0].as_float()
     };
     let across = if args[1].is_given() { args[1].as_float() } else { roughness };
-    Facets { distribution: args[2].as_distribution(), alpha: [roughness, across] }
+    Ok(Facets { distribution, alpha: [roughness, across] })
+}
+
+/// The same, step by step.
+fn varying_alpha(m: &mut Machine<'_>, args: &[Value], site: &Site) -> Eval<[Expression; 2]> {
+    let roughness = if args[3].is_given() {
+        let beta = m.texture_map2(Binary::Max, &args[3], &Value::Float(MIN_BETA));
+        let cos = m.texture_map(Unary::Cos, &beta);
+        let ln = m.texture_map(Unary::Ln, &cos);
+        let exponent = m.texture_map2(Binary::Divide, &Value::Float(0.5f64.ln()), &ln);
+        let sum = m.texture_map2(Binary::Add, &exponent, &Value::Float(2.0));
+        let square = m.texture_map2(Binary::Divide, &Value::Float(2.0), &sum);
+        m.texture_map(Unary::Sqrt, &square)
+    } else {
+        args[0].clone()
+    };
+    let across = if args[1].is_given() { args[1].clone() } else { roughness.clone() };
+    let (along, across) = (m.scalar(&roughness), m.scalar(&across));
+    Ok([m.expression(along, site.span)?, m.expression(across, site.span)?])
 }
 
 fn rough() -> Vec<Builtin> {
@@ -69,23 +109,28 @@ fn rough() -> Vec<Builtin> {
         .param(Param::new("k", Spectrum(Extinction), "imaginary part"));
     let dielectric = of("rough_dielectric", "Rough glass: this index inside, vacuum outside (Walter and others 2007).");
     let phong = of("phong", "A glossy lobe about the mirrored direction (Lafortune and Willems 1994).")
-        .param(Param::new("reflectance", Spectrum(Reflectance), "share of light that is scattered back"))
-        .param(Param::new("exponent", Float, "of the cosine").float(50.0).within(0.0, 1e7));
+        .param(Param::new("reflectance", varying_reflectance(), "share of light that is scattered back"))
+        .param(Param::new("exponent", Texture(TextureKind::Float), "of the cosine").float(50.0).within(0.0, 1e7));
     vec![
         with_facets(conductor).runs(Type::Bsdf, |m, args, site| {
             m.require_positive(&args[0], "a refractive index", site, 0)?;
             let (eta, k) = (args[0].as_spectrum().as_ref().clone(), args[1].as_spectrum().as_ref().clone());
-            bsdf(m, Bsdf::RoughConductor { eta, k, facets: facets(&args[2..]) })
+            let mut parameters = Vec::new();
+            let facets = facets(m, &args[2..], &mut parameters, site)?;
+            with_parameters(m, Bsdf::RoughConductor { eta, k, facets }, parameters)
         }),
         with_facets(dielectric.param(index())).runs(Type::Bsdf, |m, args, site| {
             m.require_positive(&args[0], "a refractive index", site, 0)?;
             let ior = args[0].as_spectrum().as_ref().clone();
-            bsdf(m, Bsdf::RoughDielectric { ior, facets: facets(&args[1..]) })
+            let mut parameters = Vec::new();
+            let facets = facets(m, &args[1..], &mut parameters, site)?;
+            with_parameters(m, Bsdf::RoughDielectric { ior, facets }, parameters)
         }),
         phong.runs(Type::Bsdf, |m, args, site| {
-            m.lint_reflectance(&args[0], site, 0);
-            let reflectance = args[0].as_spectrum().as_ref().clone();
-            bsdf(m, Bsdf::Phong { reflectance, exponent: args[1].as_float() })
+            let mut parameters = Vec::new();
+            let reflectance = m.reflectance_parameter(&args[0], &mut parameters, site, 0)?;
+            let exponent = m.number_parameter(&args[1], 1.0, Parameter::Exponent, &mut parameters, site.args[1])?;
+            with_parameters(m, Bsdf::Phong { reflectance, exponent }, parameters)
         }),
     ]
 }

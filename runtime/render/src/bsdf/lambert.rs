@@ -10,7 +10,7 @@ use crate::polarisation::Polarisation;
 
 #[derive(Clone, Debug)]
 pub struct Lambert {
-    reflectance: DenseSpectrum,
+    pub(super) reflectance: DenseSpectrum,
 }
 
 impl Lambert {

@@ -12,13 +12,24 @@
 //! Normals are sampled as seen from a direction: for GGX after Dupuy and Benyoub 2023, for Beckmann by inverting the
 //! distribution of visible slopes (Heitz and d'Eon 2014). Blinn's are sampled by D(h) h.z.
 
+use std::borrow::Cow;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
+
+use std::sync::LazyLock;
 
 use glam::DVec3;
 
 /// Limits of alpha: narrower lobes are beyond single precision, wider ones beyond the model.
 const MIN_ALPHA: f64 = 1e-4;
 const MAX_ALPHA: f64 = 1.0;
+
+/// Widths of Blinn's distribution with a masking table at hand, in steps of 4 %.
+const BLINN_WIDTHS: usize = 256;
+
+static BLINN_LADDER: LazyLock<Vec<Vec<f64>>> = LazyLock::new(|| {
+    let alpha = |i: usize| MIN_ALPHA * (MAX_ALPHA / MIN_ALPHA).powf(i as f64 / (BLINN_WIDTHS - 1) as f64);
+    (0..BLINN_WIDTHS).map(|i| blinn_masking(alpha(i))).collect()
+});
 
 /// Which function the normals follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,22 +47,37 @@ pub struct Microfacets {
     alpha: [f64; 2],
     /// Blinn: exponent, and a Lambda(a) over a / (1 + a) with a = cot(theta) / alpha.
     exponent: f64,
-    masking: Box<[f64]>,
+    masking: Cow<'static, [f64]>,
 }
 
 impl Microfacets {
     /// `alpha` along x and y; values are limited to [1e-4, 1].
     pub fn new(shape: MicrofacetShape, alpha: [f64; 2]) -> Microfacets {
+        let masking = |alpha| Cow::Owned(blinn_masking(alpha));
+        Microfacets::with_masking(shape, alpha, masking)
+    }
+
+    fn with_masking(
+        shape: MicrofacetShape,
+        alpha: [f64; 2],
+        masking: impl Fn(f64) -> Cow<'static, [f64]>,
+    ) -> Microfacets {
         let limited = |a: f64| if a.is_nan() { MAX_ALPHA } else { a.clamp(MIN_ALPHA, MAX_ALPHA) };
-        let alpha = [limited(alpha[0]), limited(alpha[1])];
+        let alpha = alpha.map(limited);
         let exponent = 2.0 / (alpha[0] * alpha[0]) - 2.0;
         match shape {
-            MicrofacetShape::Blinn => {
-                let masking = blinn_masking(alpha[0]);
-                Microfacets { shape, alpha: [alpha[0]; 2], exponent, masking }
-            }
-            _ => Microfacets { shape, alpha, exponent, masking: Box::default() },
+            MicrofacetShape::Blinn => Microfacets { shape, alpha: [alpha[0]; 2], exponent, masking: masking(alpha[0]) },
+            _ => Microfacets { shape, alpha, exponent, masking: Cow::Borrowed(&[]) },
         }
+    }
+
+    /// The same shape of another width, without memory of its own: Blinn's masking, which hardly depends on the width in
+    /// its units, is that of the nearest of a few hundred.
+    pub fn with_alpha(&self, alpha: Option<[f64; 2]>) -> Microfacets {
+        Microfacets::with_masking(self.shape, alpha.unwrap_or(self.alpha), |alpha| {
+            let at = (alpha / MIN_ALPHA).ln() / (MAX_ALPHA / MIN_ALPHA).ln() * (BLINN_WIDTHS - 1) as f64;
+            Cow::Borrowed(&BLINN_LADDER[(at.round() as usize).min(BLINN_WIDTHS - 1)])
+        })
     }
 
     /// Directions about z are not all alike.
@@ -193,7 +219,7 @@ fn invert(u: f64, mass: impl Fn(f64) -> f64, density: impl Fn(f64) -> f64, limit
 
 /// a Lambda(a) for Blinn's slopes, in units of alpha: P2(s) ~ (1 + alpha^2 s^2)^(-(n + 3) / 2), Lambda(a) the integral of
 /// (s - a) P2(s) over s > a, divided by a. Midpoint rule on s = v / (1 - v) from the far end.
-fn blinn_masking(alpha: f64) -> Box<[f64]> {
+fn blinn_masking(alpha: f64) -> Vec<f64> {
     const CELLS: usize = 256;
     const STEPS: usize = 16;
     let n = 2.0 / (alpha * alpha) - 2.0;

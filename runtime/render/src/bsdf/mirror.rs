@@ -9,7 +9,7 @@ use crate::polarisation::{DiattenuatingRetarder, Polarisation};
 
 #[derive(Clone, Debug)]
 pub struct Mirror {
-    reflectance: DenseSpectrum,
+    pub(super) reflectance: DenseSpectrum,
 }
 
 impl Mirror {

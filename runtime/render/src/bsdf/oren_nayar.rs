@@ -16,19 +16,33 @@ use crate::polarisation::Polarisation;
 
 #[derive(Clone, Debug)]
 pub struct OrenNayar {
-    reflectance: DenseSpectrum,
+    pub(super) reflectance: DenseSpectrum,
     a: f64,
     b: f64,
 }
 
 impl OrenNayar {
     pub(super) fn new(reflectance: &Spectrum, sigma: f64) -> OrenNayar {
+        let reflectance = DenseSpectrum::new(reflectance).clamped(0.0, 1.0);
+        OrenNayar { reflectance, a: 1.0, b: 0.0 }.with_sigma(sigma)
+    }
+
+    /// The same shape in another colour, of another roughness if one is given.
+    pub(super) fn with_parameters(&self, reflectance: DenseSpectrum, sigma: Option<f64>) -> OrenNayar {
+        let own = OrenNayar { reflectance, a: self.a, b: self.b };
+        match sigma {
+            Some(sigma) => own.with_sigma(sigma),
+            None => own,
+        }
+    }
+
+    /// The same colour of another roughness.
+    fn with_sigma(self, sigma: f64) -> OrenNayar {
         let sigma2 = if sigma.is_finite() { sigma * sigma } else { 0.0 };
         let a = 1.0 - 0.5 * sigma2 / (sigma2 + 0.33);
         let b = 0.45 * sigma2 / (sigma2 + 0.09);
         let scale = 1.0 / (a + 0.5 * b).max(1.0);
-        let reflectance = DenseSpectrum::new(reflectance).clamped(0.0, 1.0);
-        OrenNayar { reflectance, a: a * scale, b: b * scale }
+        OrenNayar { reflectance: self.reflectance, a: a * scale, b: b * scale }
     }
 
     /// pi f over the reflectance.

@@ -16,8 +16,8 @@ const MAX_EXPONENT: f64 = 1e7;
 
 #[derive(Clone, Debug)]
 pub struct Phong {
-    reflectance: DenseSpectrum,
-    exponent: f64,
+    pub(super) reflectance: DenseSpectrum,
+    pub(super) exponent: f64,
 }
 
 /// Cosine to the mirrored direction, to the power of the exponent.
@@ -31,8 +31,13 @@ fn lobe(wo: DVec3, wi: DVec3, exponent: f64) -> f64 {
 
 impl Phong {
     pub(super) fn new(reflectance: &Spectrum, exponent: f64) -> Phong {
-        let exponent = if exponent.is_nan() { 0.0 } else { exponent.clamp(0.0, MAX_EXPONENT) };
-        Phong { reflectance: DenseSpectrum::new(reflectance).clamped(0.0, 1.0), exponent }
+        let reflectance = DenseSpectrum::new(reflectance).clamped(0.0, 1.0);
+        Phong { reflectance, exponent: Phong::limited(exponent) }
+    }
+
+    /// The exponent within its bounds.
+    pub(super) fn limited(exponent: f64) -> f64 {
+        if exponent.is_nan() { 0.0 } else { exponent.clamp(0.0, MAX_EXPONENT) }
     }
 
     #[inline]

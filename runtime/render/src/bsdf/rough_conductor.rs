@@ -12,8 +12,8 @@ use crate::polarisation::{Mueller, Polarisation, s_axis};
 
 #[derive(Clone, Debug)]
 pub struct RoughConductor {
-    eta: DenseSpectrum,
-    k: DenseSpectrum,
+    pub(super) eta: DenseSpectrum,
+    pub(super) k: DenseSpectrum,
     pub(super) facets: Microfacets,
 }
 

@@ -24,7 +24,7 @@ fn apart(index: f32) -> f32 {
 
 #[derive(Clone, Debug)]
 pub struct RoughDielectric {
-    ior: DenseSpectrum,
+    pub(super) ior: DenseSpectrum,
     pub(super) facets: Microfacets,
 }
 

@@ -1,0 +1,187 @@
+//! Bsdfs that vary over a surface: what they are at a hit.
+//!
+//! The expressions of a material are one list of steps, equal ones once, evaluated at the hit. One part is then chosen in
+//! proportion to the weights, and stands for the whole at this event: light sampling and scattering see a single bsdf whose
+//! value, density and samples agree. Radiance is linear in the bsdf, so that the mean is that of the weighted sum, with any
+//! mixture of smooth and rough parts. Nothing is allocated at a hit; spectra are taken at the path's wavelengths.
+
+use std::cell::RefCell;
+
+use arsc_accel::{Hit, Scene};
+use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths};
+use arsc_texture::{Expression, ExpressionGraph, Inputs, Needs, Step, evaluate};
+use glam::DAffine3;
+
+use crate::bsdf::{Bsdf, BsdfParameters};
+
+/// One of several bsdfs at a point, with what varies in it.
+#[derive(Clone, Debug)]
+pub struct VaryingPart {
+    /// Relative to the sum over the parts; negative values count as 0.
+    pub weight: Expression,
+    pub bsdf: Bsdf,
+    pub parameters: Vec<Parameter>,
+}
+
+/// A parameter of a bsdf that varies; values are limited to what the bsdf allows.
+#[derive(Clone, Debug)]
+pub enum Parameter {
+    /// The sum of weighted spectra.
+    Reflectance(Vec<(Expression, DenseSpectrum)>),
+    /// Of Oren and Nayar's model, radians.
+    Sigma(Expression),
+    /// Of the Phong lobe.
+    Exponent(Expression),
+    /// Of microfacets, along and across the direction of growing u.
+    Roughness([Expression; 2]),
+}
+
+/// Positions of steps in place of expressions.
+#[derive(Clone, Debug)]
+enum Slot {
+    Reflectance(Vec<(u32, DenseSpectrum)>),
+    Sigma(u32),
+    Exponent(u32),
+    Roughness([u32; 2]),
+}
+
+#[derive(Clone, Debug)]
+struct Part {
+    weight: u32,
+    bsdf: Bsdf,
+    slots: Vec<Slot>,
+}
+
+/// A bsdf that varies.
+#[derive(Clone, Debug)]
+pub struct VaryingBsdf {
+    steps: Vec<Step>,
+    needs: Needs,
+    parts: Vec<Part>,
+    texture_from_object: DAffine3,
+}
+
+thread_local! {
+    /// Values of steps.
+    static VALUES: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+}
+
+impl VaryingBsdf {
+    /// `texture_from_object` leads from the object space of the leaf to the space of the expressions. `None` without parts.
+    pub fn new(parts: Vec<VaryingPart>, texture_from_object: DAffine3) -> Option<VaryingBsdf> {
+        let mut graph = ExpressionGraph::default();
+        let mut put = |expression: &Expression| graph.insert(expression).0;
+        let mut compiled = Vec::new();
+        for part in parts {
+            let weight = put(&part.weight);
+            let slot = |parameter: Parameter| match parameter {
+                Parameter::Reflectance(terms) => {
+                    Slot::Reflectance(terms.into_iter().map(|(weight, s)| (put(&weight), s)).collect())
+                }
+                Parameter::Sigma(sigma) => Slot::Sigma(put(&sigma)),
+                Parameter::Exponent(exponent) => Slot::Exponent(put(&exponent)),
+                Parameter::Roughness(alpha) => Slot::Roughness(alpha.map(|alpha| put(&alpha))),
+            };
+            let slots = part.parameters.into_iter().map(slot).collect();
+            compiled.push(Part { weight, bsdf: part.bsdf, slots });
+        }
+        let steps = graph.steps().to_vec();
+        let needs = Needs::of(&steps);
+        (!compiled.is_empty()).then_some(VaryingBsdf { steps, needs, parts: compiled, texture_from_object })
+    }
+
+    /// The part that answers for all when a question has no place: an interface if there is one, else the first that does
+    /// something to light.
+    pub fn representative(&self) -> &Bsdf {
+        let interface = self.bsdfs().find(|bsdf| bsdf.index().is_some());
+        interface.or_else(|| self.bsdfs().find(|bsdf| bsdf.has_interface())).unwrap_or(&self.parts[0].bsdf)
+    }
+
+    pub(crate) fn bsdfs(&self) -> impl Iterator<Item = &Bsdf> {
+        self.parts.iter().map(|part| &part.bsdf)
+    }
+
+    /// The bsdf at a hit: a part as it is, or with its parameters in `owned`. `u` picks the part; what is left of it is
+    /// uniform again.
+    pub(crate) fn at<'a>(
+        &'a self,
+        geometry: &Scene,
+        hit: &Hit,
+        u: &mut f64,
+        wavelengths: &SampledWavelengths,
+        owned: &'a mut Option<Bsdf>,
+    ) -> &'a Bsdf {
+        let inputs = self.inputs(geometry, hit);
+        VALUES.with_borrow_mut(|values| {
+            evaluate(&self.steps, &inputs, values);
+            let part = self.choose(values, u);
+            if part.slots.is_empty() {
+                return &part.bsdf;
+            }
+            &*owned.insert(part.resolve(values, wavelengths))
+        })
+    }
+
+    /// What the expressions read at a hit.
+    fn inputs(&self, geometry: &Scene, hit: &Hit) -> Inputs {
+        let mut inputs = Inputs { world_p: hit.p, world_normal: hit.ns, ..Inputs::default() };
+        if self.needs.local {
+            let map = self.texture_from_object * geometry.object_from_world(hit.part);
+            inputs.p = map.transform_point3(hit.p);
+            inputs.normal = (map.matrix3.inverse().transpose() * hit.ns).normalize_or(hit.ns);
+        }
+        if self.needs.uv {
+            inputs.uv = geometry.parametrize(hit).uv;
+        }
+        inputs
+    }
+
+    fn choose(&self, values: &[f64], u: &mut f64) -> &Part {
+        if let [only] = &self.parts[..] {
+            return only;
+        }
+        let weight = |part: &Part| values[part.weight as usize].max(0.0);
+        let sum: f64 = self.parts.iter().map(weight).sum();
+        let mut rest = *u * sum;
+        for part in &self.parts {
+            let weight = weight(part);
+            if rest < weight {
+                *u = (rest / weight).clamp(0.0, 1.0 - f64::EPSILON);
+                return part;
+            }
+            rest -= weight;
+        }
+        // Rounding, or no weight at all.
+        let last = self.parts.iter().rev().find(|part| weight(part) > 0.0);
+        last.unwrap_or(&self.parts[0])
+    }
+}
+
+impl Part {
+    fn resolve(&self, values: &[f64], wavelengths: &SampledWavelengths) -> Bsdf {
+        let at = |step: u32| values[step as usize];
+        let mut parameters = BsdfParameters::default();
+        for slot in &self.slots {
+            match slot {
+                Slot::Reflectance(terms) => parameters.reflectance = Some(blend(terms, values, wavelengths)),
+                Slot::Sigma(sigma) => parameters.sigma = Some(at(*sigma)),
+                Slot::Exponent(exponent) => parameters.exponent = Some(at(*exponent)),
+                Slot::Roughness(alpha) => parameters.alpha = Some(alpha.map(at)),
+            }
+        }
+        self.bsdf.with_parameters(&parameters, wavelengths)
+    }
+}
+
+/// The sum of weighted spectra, limited to [0, 1].
+fn blend(terms: &[(u32, DenseSpectrum)], values: &[f64], wavelengths: &SampledWavelengths) -> SampledSpectrum {
+    let mut sum = SampledSpectrum::ZERO;
+    for (weight, spectrum) in terms {
+        let weight = values[*weight as usize] as f32;
+        if weight != 0.0 {
+            sum += spectrum.sample(wavelengths) * weight;
+        }
+    }
+    // Opposite infinities of single precision leave no number: black.
+    sum.map(|value| if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) })
+}

@@ -1,0 +1,139 @@
+//! What varies over a surface, against means that are known.
+
+use arsc_accel::{Shape, SurfaceShape};
+use arsc_render::bsdf::{MicrofacetShape, Microfacets};
+use arsc_render::{Bsdf, Environment, Material, Parameter, VaryingBsdf, VaryingPart};
+use arsc_spectral::{DenseSpectrum, Spectrum};
+use arsc_texture::{Binary, Expression, ExpressionGraph, Input, Step, Unary};
+use glam::{DAffine3, DVec2, DVec3};
+
+use super::support::{Estimate, Stage, camera, constant, estimate, render, spot_camera};
+
+fn varying(parts: Vec<VaryingPart>, texture_from_object: DAffine3) -> Material {
+    let varying = VaryingBsdf::new(parts, texture_from_object).expect("parts");
+    Material { bsdf: varying.representative().clone(), varying: Some(Box::new(varying)), ..Material::default() }
+}
+
+fn part(weight: f64, bsdf: Bsdf) -> VaryingPart {
+    VaryingPart { weight: Expression::constant(weight), bsdf, parameters: Vec::new() }
+}
+
+fn coloured(reflectance: Expression) -> Material {
+    let bsdf = Bsdf::lambert(&constant(0.5));
+    let parameters = vec![Parameter::Reflectance(vec![(reflectance, DenseSpectrum::new(&constant(1.0)))])];
+    varying(vec![VaryingPart { weight: Expression::constant(1.0), bsdf, parameters }], DAffine3::IDENTITY)
+}
+
+/// floor(x) + floor(y) modulo 2.
+fn checker() -> Expression {
+    let mut g = ExpressionGraph::default();
+    let [x, y] = [Input::WorldX, Input::WorldY].map(|input| {
+        let input = g.add(Step::Input(input));
+        g.unary(Unary::Floor, input)
+    });
+    let (sum, two) = (g.binary(Binary::Add, x, y), g.constant(2.0));
+    let checker = g.binary(Binary::Modulo, sum, two);
+    g.expression(checker)
+}
+
+fn input(input: Input) -> Expression {
+    Expression::new(vec![Step::Input(input)]).expect("one step")
+}
+
+/// In a furnace of radiance 1 a diffuse floor shows its reflectance: one half in pixels of two by two squares.
+#[test]
+fn a_checkered_floor_shows_its_mean() {
+    let mut stage = Stage::default();
+    stage.environments.push(Environment::constant(&constant(1.0)));
+    let floor = SurfaceShape::Rectangle { size: DVec2::splat(40.0) };
+    stage.surface(floor, DAffine3::IDENTITY, coloured(checker()));
+    let fov = 2.0 * (16.0f64 / 20.0).atan();
+    let camera = camera(DVec3::new(0.0, 0.0, 20.0), DVec3::ZERO, fov, 16);
+    estimate(&render(&stage.build(), &camera, 1024, 1)).assert_is(0.5, 5e-3);
+}
+
+/// The texture's space is found at the hit, under transforms of the leaf and of the texture.
+#[test]
+fn places_are_found_in_the_space_of_the_texture() {
+    for (shift, wanted) in [(0.0, 0.25), (0.25, 0.5)] {
+        let mut stage = Stage::default();
+        stage.environments.push(Environment::constant(&constant(1.0)));
+        let material = {
+            let bsdf = Bsdf::lambert(&constant(0.5));
+            let one = DenseSpectrum::new(&constant(1.0));
+            let parameters = vec![Parameter::Reflectance(vec![(input(Input::X), one)])];
+            let part = VaryingPart { weight: Expression::constant(1.0), bsdf, parameters };
+            varying(vec![part], DAffine3::from_translation(DVec3::X * shift))
+        };
+        let place = DAffine3::from_translation(DVec3::new(3.0, 0.0, 0.0)) * DAffine3::from_scale(DVec3::splat(2.0));
+        stage.solid(Shape::Box { min: -DVec3::ONE, max: DVec3::ONE }, place, material);
+        // World x = 3.5 is 0.25 of the box.
+        let camera = spot_camera(DVec3::new(3.5, 0.0, 9.0), DVec3::new(3.5, 0.0, 2.0));
+        estimate(&render(&stage.build(), &camera, 1024, 1)).assert_is(wanted, 5e-3);
+    }
+}
+
+/// A quarter mirror, three quarters paint of reflectance 0.6, in a furnace: 0.25 + 0.45. Light sampling sees the paint alone.
+#[test]
+fn a_mixture_shows_the_sum_of_its_parts() {
+    let parts = || vec![part(1.0, Bsdf::mirror(&constant(1.0))), part(3.0, Bsdf::lambert(&constant(0.6)))];
+    let furnace = |material: Material, samples| {
+        let mut stage = Stage::default();
+        stage.environments.push(Environment::constant(&constant(1.0)));
+        stage.sphere(DVec3::ZERO, 1.0, material);
+        let camera = spot_camera(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO);
+        estimate(&render(&stage.build(), &camera, samples, 8))
+    };
+    furnace(varying(parts(), DAffine3::IDENTITY), 4096).assert_is(0.7, 5e-3);
+}
+
+/// White paint, a mirror, rough glass without loss: a sphere of their mixture vanishes in a furnace as they do.
+#[test]
+fn a_mixture_of_lossless_parts_vanishes() {
+    let facets = Microfacets::new(MicrofacetShape::Ggx, [0.01; 2]);
+    let parts = vec![
+        part(1.0, Bsdf::lambert(&constant(1.0))),
+        part(2.0, Bsdf::mirror(&constant(1.0))),
+        part(3.0, Bsdf::rough_dielectric(&constant(1.5), facets)),
+        part(1.0, Bsdf::Inert),
+    ];
+    let mut stage = Stage::default();
+    stage.environments.push(Environment::constant(&constant(1.0)));
+    stage.sphere(DVec3::ZERO, 1.0, varying(parts, DAffine3::IDENTITY));
+    let camera = camera(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO, 0.5, 32);
+    estimate(&render(&stage.build(), &camera, 64, 200)).assert_is(1.0, 3e-3);
+}
+
+/// Parameters that vary but happen to be constant give the picture of the plain bsdf, path by path.
+#[test]
+fn constant_parameters_give_the_plain_picture() {
+    let grey = constant(0.4);
+    let shapes = [MicrofacetShape::Ggx, MicrofacetShape::Beckmann];
+    let rough =
+        |shape, alpha: f64| Bsdf::rough_conductor(&constant(0.3), &constant(3.0), Microfacets::new(shape, [alpha; 2]));
+    let of = |value: f64| Expression::constant(value);
+    let reflectance = || Parameter::Reflectance(vec![(of(0.4), DenseSpectrum::new(&constant(1.0)))]);
+    let other = constant(0.9);
+    let mut cases = vec![
+        (Bsdf::lambert(&grey), Bsdf::lambert(&other), vec![reflectance()]),
+        (Bsdf::oren_nayar(&grey, 0.3), Bsdf::oren_nayar(&other, 0.0), vec![reflectance(), Parameter::Sigma(of(0.3))]),
+        (Bsdf::phong(&grey, 20.0), Bsdf::phong(&other, 3.0), vec![reflectance(), Parameter::Exponent(of(20.0))]),
+    ];
+    for shape in shapes {
+        cases.push((rough(shape, 0.2), rough(shape, 0.7), vec![Parameter::Roughness([of(0.2), of(0.2)])]));
+    }
+    for (plain, base, parameters) in cases {
+        let picture = |material: Material| -> Estimate {
+            let mut stage = Stage::default();
+            stage.environments.push(Environment::constant(&Spectrum::Blackbody { kelvin: 5000.0 }));
+            stage.sphere(DVec3::ZERO, 1.0, material);
+            let camera = camera(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO, 0.5, 8);
+            estimate(&render(&stage.build(), &camera, 8, 4))
+        };
+        let part = VaryingPart { weight: Expression::constant(1.0), bsdf: base, parameters };
+        let varied = picture(varying(vec![part], DAffine3::IDENTITY));
+        let wanted = picture(Material { bsdf: plain.clone(), ..Material::default() });
+        let error = (varied.mean - wanted.mean).abs();
+        assert!(error < 1e-5 * wanted.mean, "{plain:?}: {varied:?} is not {wanted:?}");
+    }
+}
