@@ -2,9 +2,9 @@
 
 use arsc_accel::{Shape, SurfaceShape};
 use arsc_render::bsdf::{MicrofacetShape, Microfacets};
-use arsc_render::{Bsdf, Environment, Material, Parameter, VaryingBsdf, VaryingPart};
+use arsc_render::{Bsdf, Environment, Light, Material, Parameter, VaryingBsdf, VaryingPart};
 use arsc_spectral::{DenseSpectrum, Spectrum};
-use arsc_texture::{Binary, Expression, ExpressionGraph, Input, Step, Unary};
+use arsc_texture::{Binary, Expression, ExpressionGraph, Input, Noise, Step, Unary};
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::support::{Estimate, Stage, camera, constant, estimate, render, spot_camera};
@@ -136,4 +136,68 @@ fn constant_parameters_give_the_plain_picture() {
         let error = (varied.mean - wanted.mean).abs();
         assert!(error < 1e-5 * wanted.mean, "{plain:?}: {varied:?} is not {wanted:?}");
     }
+}
+
+/// A floor of reflectance 1/2 under light from a direction, of irradiance 1 across the beam, looked at from above.
+fn lit_floor(place: DAffine3, parameter: Parameter, light: DVec3) -> Estimate {
+    let mut stage = Stage::default();
+    stage.lights.push(Light::distant(-light, &constant(1.0)));
+    let bsdf = Bsdf::lambert(&constant(0.5));
+    let part = VaryingPart { weight: Expression::constant(1.0), bsdf, parameters: vec![parameter] };
+    let floor = SurfaceShape::Rectangle { size: DVec2::splat(4.0) };
+    stage.surface(floor, place, varying(vec![part], DAffine3::IDENTITY));
+    let eye = DVec3::new(0.3, 0.2, 5.0);
+    estimate(&render(&stage.build(), &spot_camera(eye, DVec3::new(0.3, 0.2, 0.0)), 1, 1))
+}
+
+/// Height a x: the normal leans by atan a, whatever the size of the object and however the height is written. The slope of
+/// u over the floor is 1 / 4 in its space.
+#[test]
+fn raised_and_mapped_floors_are_lit_by_their_slope() {
+    let a = 0.75;
+    let slope = |input: Input, factor: f64| {
+        let steps = vec![Step::Input(input), Step::Constant(factor), Step::Binary(Binary::Multiply, 0, 1)];
+        Expression::new(steps).expect("sound steps")
+    };
+    let normal = [-a, 0.0, 1.0].map(Expression::constant);
+    let light = DVec3::new(0.48, 0.6, 0.64);
+    let wanted = 0.5 / std::f64::consts::PI * light.dot(DVec3::new(-a, 0.0, 1.0).normalize());
+    for scale in [1.0, 3.0] {
+        let place = DAffine3::from_scale(DVec3::splat(scale));
+        let reliefs = [
+            Parameter::Height(slope(Input::X, a)),
+            Parameter::Height(slope(Input::U, 4.0 * a)),
+            Parameter::Height(slope(Input::WorldX, a / scale)),
+            Parameter::Normal(normal.clone()),
+        ];
+        for relief in reliefs {
+            let found = lit_floor(place, relief.clone(), light).mean;
+            assert!((found - wanted).abs() < 1e-5, "{relief:?} at scale {scale}: {found} is not {wanted}");
+        }
+    }
+}
+
+/// White walls in a furnace gain nothing by their bumps and lose little.
+#[test]
+fn bumps_gain_no_energy() {
+    let noise = Expression::new(vec![
+        Step::Input(Input::X),
+        Step::Input(Input::Y),
+        Step::Input(Input::Z),
+        Step::Constant(5.0),
+        Step::Binary(Binary::Multiply, 0, 3),
+        Step::Binary(Binary::Multiply, 1, 3),
+        Step::Binary(Binary::Multiply, 2, 3),
+        Step::Noise(Noise::Perlin { seed: 0 }, [4, 5, 6]),
+        Step::Constant(0.1),
+        Step::Binary(Binary::Multiply, 7, 8),
+    ]);
+    let parameters = vec![Parameter::Height(noise.expect("sound steps"))];
+    let part = VaryingPart { weight: Expression::constant(1.0), bsdf: Bsdf::lambert(&constant(1.0)), parameters };
+    let mut stage = Stage::default();
+    stage.environments.push(Environment::constant(&constant(1.0)));
+    stage.sphere(DVec3::ZERO, 1.0, varying(vec![part], DAffine3::IDENTITY));
+    let camera = camera(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO, 0.4, 32);
+    let Estimate { mean, standard_error } = estimate(&render(&stage.build(), &camera, 32, 50));
+    assert!(mean < 1.0 + 5.0 * standard_error && mean > 0.9, "{mean}");
 }

@@ -40,6 +40,11 @@ pub enum Parameter {
     Exponent(Expression),
     /// Alpha of microfacets, along and across the direction of growing u.
     Roughness([Expression; 2]),
+    /// Of any bsdf: how far the surface seems to stand out along its normal, in the space in which the material was
+    /// attached. Only the shading normal changes.
+    Height(Expression),
+    /// Of any bsdf: the shading normal, of any length, by the direction of growing u, that across it, and the normal.
+    Normal([Expression; 3]),
 }
 
 /// A spectrum that varies over a surface: the sum of weighted spectra.
@@ -63,9 +68,11 @@ impl Varying {
         })
     }
 
-    /// Expressions read places in the space in which the material was attached.
+    /// The space in which the material was attached matters.
     pub fn is_local(&self) -> bool {
-        self.expressions().any(|expression| expression.needs().local)
+        let is_height = |parameter: &Parameter| matches!(parameter, Parameter::Height(_));
+        let has_height = self.parts.iter().any(|part| part.parameters.iter().any(is_height));
+        has_height || self.expressions().any(|expression| expression.needs().local)
     }
 
     /// What the expressions read.
@@ -82,8 +89,11 @@ impl Parameter {
     pub fn expressions(&self) -> Vec<&Expression> {
         match self {
             Parameter::Reflectance(texture) => texture.terms.iter().map(|term| &term.weight).collect(),
-            Parameter::Sigma(expression) | Parameter::Exponent(expression) => vec![expression],
+            Parameter::Sigma(expression) | Parameter::Exponent(expression) | Parameter::Height(expression) => {
+                vec![expression]
+            }
             Parameter::Roughness(alpha) => alpha.iter().collect(),
+            Parameter::Normal(normal) => normal.iter().collect(),
         }
     }
 }

@@ -37,6 +37,10 @@ fn parameter<'a, 'b>(call: Call<'a, 'b>, parameter: &Parameter) -> Result<Call<'
         Parameter::Reflectance(texture) => call.arg("reflectance", Text(texture)),
         Parameter::Sigma(sigma) => call.arg("sigma", Text(sigma)),
         Parameter::Exponent(exponent) => call.arg("exponent", Text(exponent)),
+        Parameter::Height(height) => call.arg("height", Text(height)),
+        Parameter::Normal([u, v, n]) => {
+            call.arg("normal", format_args!("normal({}, {}, {})", Text(u), Text(v), Text(n)))
+        }
         Parameter::Roughness([along, across]) => call.arg("roughness", Text(along))?.arg("across", Text(across)),
     }
 }
@@ -115,6 +119,13 @@ fn part(term: Term) -> Result<Part, Fault> {
             Some("reflectance") => Parameter::Reflectance(blend(term)?),
             Some("sigma") => Parameter::Sigma(expression(term)?),
             Some("exponent") => Parameter::Exponent(expression(term)?),
+            Some("height") => Parameter::Height(expression(term)?),
+            Some("normal") => {
+                let mut parts = named(term, "normal")?;
+                let normal = [expression(parts.next()?)?, expression(parts.next()?)?, expression(parts.next()?)?];
+                parts.end()?;
+                Parameter::Normal(normal)
+            }
             Some("roughness") => Parameter::Roughness([expression(term)?, expression(args.take("across")?)?]),
             _ => return Err((offset, "a part takes no such argument".to_owned())),
         });

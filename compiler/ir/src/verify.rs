@@ -262,6 +262,7 @@ fn check_varying(varying: &Varying) -> Check {
                 }
                 Parameter::Sigma(_) => matches!(part.bsdf, Bsdf::OrenNayar { .. }),
                 Parameter::Exponent(_) => matches!(part.bsdf, Bsdf::Phong { .. }),
+                Parameter::Height(_) | Parameter::Normal(_) => true,
                 Parameter::Roughness(_) => {
                     matches!(part.bsdf, Bsdf::RoughConductor { .. } | Bsdf::RoughDielectric { .. })
                 }

@@ -89,6 +89,8 @@ fn lower_parameter(parameter: &arsc_ir::Parameter) -> Parameter {
         arsc_ir::Parameter::Sigma(sigma) => Parameter::Sigma(sigma.clone()),
         arsc_ir::Parameter::Exponent(exponent) => Parameter::Exponent(exponent.clone()),
         arsc_ir::Parameter::Roughness(alpha) => Parameter::Roughness(alpha.clone()),
+        arsc_ir::Parameter::Height(height) => Parameter::Height(height.clone()),
+        arsc_ir::Parameter::Normal(normal) => Parameter::Normal(normal.clone()),
     }
 }
 

@@ -85,7 +85,7 @@ pub fn incident_radiance<P: Polarisation>(
     let mut path = Path::<P> { ray, beta, path_pdf: SampledSpectrum::ONE, direction_pdf: None, eta2: 1.0 };
     let mut radiance = P::Stokes::unpolarised(SampledSpectrum::ZERO);
     for depth in 0..=max_depth {
-        let Some(hit) = world.geometry.intersect(&path.ray) else {
+        let Some(mut hit) = world.geometry.intersect(&path.ray) else {
             radiance += escaped_radiance(world, &path, wavelengths);
             break;
         };
@@ -103,7 +103,7 @@ pub fn incident_radiance<P: Polarisation>(
         let pair = CAMERA_PAIRS + EVENT_PAIRS * depth;
         let mut u_lobe = sampler.pair(pair + BSDF_LOBE);
         let mut owned = None;
-        let bsdf = world.bsdf(&hit, &mut u_lobe[0], wavelengths, &mut owned);
+        let bsdf = world.bsdf(&mut hit, &mut u_lobe[0], wavelengths, &mut owned);
         let event = Event::new(world, &hit, wo, bsdf);
         if !event.bsdf.is_specular() {
             let choice = sampler.single(pair + LIGHT_CHOICE);

@@ -9,10 +9,11 @@ use std::cell::RefCell;
 
 use arsc_accel::{Hit, Scene};
 use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths};
-use arsc_texture::{Expression, ExpressionGraph, Inputs, Needs, Step, evaluate};
-use glam::DAffine3;
+use arsc_texture::{Dual, Expression, ExpressionGraph, Inputs, Needs, Step, evaluate, evaluate_gradients};
+use glam::{DAffine3, DVec2, DVec3};
 
 use crate::bsdf::{Bsdf, BsdfParameters};
+use crate::frame::Frame;
 
 /// One of several bsdfs at a point, with what varies in it.
 #[derive(Clone, Debug)]
@@ -34,6 +35,10 @@ pub enum Parameter {
     Exponent(Expression),
     /// Of microfacets, along and across the direction of growing u.
     Roughness([Expression; 2]),
+    /// Of any: how far the surface seems to stand out along its normal, in the space of the expressions.
+    Height(Expression),
+    /// Of any: the shading normal along growing u, across it, and along the normal.
+    Normal([Expression; 3]),
 }
 
 /// Positions of steps in place of expressions.
@@ -50,6 +55,15 @@ struct Part {
     weight: u32,
     bsdf: Bsdf,
     slots: Vec<Slot>,
+    relief: Relief,
+}
+
+/// What bends the shading normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Relief {
+    None,
+    Height(u32),
+    Normal([u32; 3]),
 }
 
 /// A bsdf that varies.
@@ -64,6 +78,8 @@ pub struct VaryingBsdf {
 thread_local! {
     /// Values of steps.
     static VALUES: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+    /// With derivatives.
+    static DUALS: RefCell<Vec<Dual>> = const { RefCell::new(Vec::new()) };
 }
 
 impl VaryingBsdf {
@@ -74,19 +90,30 @@ impl VaryingBsdf {
         let mut compiled = Vec::new();
         for part in parts {
             let weight = put(&part.weight);
-            let slot = |parameter: Parameter| match parameter {
-                Parameter::Reflectance(terms) => {
-                    Slot::Reflectance(terms.into_iter().map(|(weight, s)| (put(&weight), s)).collect())
-                }
-                Parameter::Sigma(sigma) => Slot::Sigma(put(&sigma)),
-                Parameter::Exponent(exponent) => Slot::Exponent(put(&exponent)),
-                Parameter::Roughness(alpha) => Slot::Roughness(alpha.map(|alpha| put(&alpha))),
-            };
-            let slots = part.parameters.into_iter().map(slot).collect();
-            compiled.push(Part { weight, bsdf: part.bsdf, slots });
+            let (mut slots, mut relief) = (Vec::new(), Relief::None);
+            for parameter in part.parameters {
+                slots.push(match parameter {
+                    Parameter::Reflectance(terms) => {
+                        Slot::Reflectance(terms.into_iter().map(|(weight, s)| (put(&weight), s)).collect())
+                    }
+                    Parameter::Sigma(sigma) => Slot::Sigma(put(&sigma)),
+                    Parameter::Exponent(exponent) => Slot::Exponent(put(&exponent)),
+                    Parameter::Roughness(alpha) => Slot::Roughness(alpha.map(|alpha| put(&alpha))),
+                    Parameter::Height(height) => {
+                        relief = Relief::Height(put(&height));
+                        continue;
+                    }
+                    Parameter::Normal(normal) => {
+                        relief = Relief::Normal(normal.map(|component| put(&component)));
+                        continue;
+                    }
+                });
+            }
+            compiled.push(Part { weight, bsdf: part.bsdf, slots, relief });
         }
         let steps = graph.steps().to_vec();
-        let needs = Needs::of(&steps);
+        let mut needs = Needs::of(&steps);
+        needs.local |= compiled.iter().any(|part| matches!(part.relief, Relief::Height(_)));
         (!compiled.is_empty()).then_some(VaryingBsdf { steps, needs, parts: compiled, texture_from_object })
     }
 
@@ -102,11 +129,11 @@ impl VaryingBsdf {
     }
 
     /// The bsdf at a hit: a part as it is, or with its parameters in `owned`. `u` picks the part; what is left of it is
-    /// uniform again.
+    /// uniform again. The hit gets the part's shading normal.
     pub(crate) fn at<'a>(
         &'a self,
         geometry: &Scene,
-        hit: &Hit,
+        hit: &mut Hit,
         u: &mut f64,
         wavelengths: &SampledWavelengths,
         owned: &'a mut Option<Bsdf>,
@@ -115,6 +142,15 @@ impl VaryingBsdf {
         VALUES.with_borrow_mut(|values| {
             evaluate(&self.steps, &inputs, values);
             let part = self.choose(values, u);
+            let ns = match part.relief {
+                Relief::None => hit.ns,
+                Relief::Height(height) => self.raised_normal(geometry, hit, &inputs, height),
+                Relief::Normal(normal) => mapped_normal(geometry, hit, normal.map(|step| values[step as usize])),
+            };
+            // A normal that points into the surface is of no use.
+            if ns.dot(hit.ng) > 0.0 {
+                hit.ns = ns;
+            }
             if part.slots.is_empty() {
                 return &part.bsdf;
             }
@@ -136,6 +172,25 @@ impl VaryingBsdf {
         inputs
     }
 
+    /// The normal of the surface raised by a height: n - grad h, for lengths in the space of the texture (Blinn 1978,
+    /// "Simulation of wrinkled surfaces").
+    fn raised_normal(&self, geometry: &Scene, hit: &Hit, inputs: &Inputs, height: u32) -> DVec3 {
+        let texture_from_world = self.texture_from_object * geometry.object_from_world(hit.part);
+        let world_from_texture = texture_from_world.matrix3.inverse();
+        let frame = Frame::new(inputs.normal);
+        let along = [frame.x, frame.y].map(|tangent| {
+            let world_p = world_from_texture * tangent;
+            let uv = if self.needs.uv { uv_slope(geometry, hit, inputs.uv, world_p) } else { DVec2::ZERO };
+            Inputs { p: tangent, world_p, uv, ..Inputs::default() }
+        });
+        let slope = DUALS.with_borrow_mut(|values| {
+            evaluate_gradients(&self.steps[..=height as usize], inputs, &along, values);
+            values.last().map_or(DVec2::ZERO, |value| value.1)
+        });
+        let raised = inputs.normal - frame.x * slope.x - frame.y * slope.y;
+        (texture_from_world.matrix3.transpose() * raised).try_normalize().unwrap_or(hit.ns)
+    }
+
     fn choose(&self, values: &[f64], u: &mut f64) -> &Part {
         if let [only] = &self.parts[..] {
             return only;
@@ -155,6 +210,20 @@ impl VaryingBsdf {
         let last = self.parts.iter().rev().find(|part| weight(part) > 0.0);
         last.unwrap_or(&self.parts[0])
     }
+}
+
+/// Change of the surface coordinates per length of a tangent. A difference: coordinates are smooth but for seams.
+fn uv_slope(geometry: &Scene, hit: &Hit, uv: DVec2, tangent: DVec3) -> DVec2 {
+    // Far above rounding, far below features.
+    let step = 1e7 * hit.p_error / tangent.length();
+    let moved = geometry.parametrize(&Hit { p: hit.p + tangent * step, ..*hit }).uv;
+    let change = moved - uv;
+    (change - change.round()) / step
+}
+
+fn mapped_normal(geometry: &Scene, hit: &Hit, [u, v, n]: [f64; 3]) -> DVec3 {
+    let frame = Frame::with_tangent(hit.ns, geometry.parametrize(hit).dpdu);
+    frame.to_world(DVec3::new(u, v, n)).try_normalize().unwrap_or(hit.ns)
 }
 
 impl Part {

@@ -362,8 +362,9 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
 
     fn scatter_at_surface(&mut self, path: &mut Path<P>, hit: &Hit, draw: &Draw) -> bool {
         let wo = -path.ray.dir;
-        let (mut u_lobe, mut owned) = (draw.pair(LOBE)[0], None);
-        let mut bsdf = self.world.bsdf(hit, &mut u_lobe, &path.wavelengths, &mut owned);
+        let (mut u_lobe, mut owned, mut hit) = (draw.pair(LOBE)[0], None, *hit);
+        let mut bsdf = self.world.bsdf(&mut hit, &mut u_lobe, &path.wavelengths, &mut owned);
+        let hit = &hit;
         if let Some(fluorescent) = bsdf.fluorescent() {
             let [choice, shift] = draw.pair(SHIFT);
             let event = fluorescent.choose(&path.wavelengths, self.range, choice, shift);

@@ -228,11 +228,11 @@ impl World {
     }
 
     /// The bsdf at a hit, in `owned` where it is made there. `u` chooses among the parts of a mixture, and what is left of it
-    /// is uniform again; all that happens at the hit must see the same choice.
+    /// is uniform again; all that happens at the hit must see the same choice, and the shading normal that the hit gets.
     #[inline]
     pub(crate) fn bsdf<'a>(
         &'a self,
-        hit: &Hit,
+        hit: &mut Hit,
         u: &mut f64,
         wavelengths: &SampledWavelengths,
         owned: &'a mut Option<Bsdf>,

@@ -8,11 +8,13 @@
 //! mathematics has no finite value the result is a stated finite one, so that no NaN and no infinity reaches a renderer.
 
 mod expression;
+mod gradient;
 mod graph;
 mod noise;
 mod operation;
 
 pub use expression::{Expression, ExpressionError, Inputs, Needs, Step, evaluate};
+pub use gradient::{Dual, evaluate_gradients};
 pub use graph::{ExpressionGraph, StepId};
 pub use noise::{MAX_OCTAVES, Noise, PERLIN_BOUND, perlin};
 pub use operation::{Binary, Input, Unary};

@@ -55,32 +55,87 @@ impl Noise {
     }
 }
 
-fn sum(mut p: DVec3, seed: u32, octaves: u32, lacunarity: f64, gain: f64, shape: fn(f64) -> f64) -> f64 {
-    let (mut sum, mut weight) = (0.0, 1.0);
-    for octave in 0..octaves.min(MAX_OCTAVES) {
-        // A lattice of its own for each octave: all would be zero at the origin.
-        sum += weight * shape(perlin(p, seed.wrapping_add(octave.wrapping_mul(0x9E37_79B9))));
-        p *= lacunarity;
-        weight *= gain;
-    }
+fn sum(p: DVec3, seed: u32, count: u32, lacunarity: f64, gain: f64, shape: fn(f64) -> f64) -> f64 {
+    let mut sum = 0.0;
+    octaves(p, seed, count, lacunarity, gain, |p, seed, weight, _| sum += weight * shape(perlin(p, seed)));
     sum
 }
 
-/// Noise at a point; mean 0 over space, feature size 1. Zero beyond 2^52, where doubles have no fractions.
-pub fn perlin(p: DVec3, seed: u32) -> f64 {
-    const FAR: f64 = 4_503_599_627_370_496.0;
-    if !p.abs().cmplt(DVec3::splat(FAR)).all() {
-        return 0.0;
+/// Calls `visit` with the place, the seed, the weight and the frequency of each octave.
+pub(crate) fn octaves(
+    mut p: DVec3,
+    seed: u32,
+    count: u32,
+    lacunarity: f64,
+    gain: f64,
+    mut visit: impl FnMut(DVec3, u32, f64, f64),
+) {
+    let (mut weight, mut frequency) = (1.0, 1.0);
+    for octave in 0..count.min(MAX_OCTAVES) {
+        // A lattice of its own for each octave: all would be zero at the origin.
+        visit(p, seed.wrapping_add(octave.wrapping_mul(0x9E37_79B9)), weight, frequency);
+        p *= lacunarity;
+        weight *= gain;
+        frequency *= lacunarity;
     }
-    let cell = p.floor();
-    let f = p - cell;
+}
+
+/// The cell of a point.
+struct Cell {
+    corner: [u64; 3],
+    /// The point within it, from 0 to 1.
+    f: DVec3,
+    seed: u64,
+}
+
+impl Cell {
+    /// `None` beyond 2^52, where doubles have no fractions.
+    #[inline]
+    fn of(p: DVec3, seed: u32) -> Option<Cell> {
+        const FAR: f64 = 4_503_599_627_370_496.0;
+        if !p.abs().cmplt(DVec3::splat(FAR)).all() {
+            return None;
+        }
+        let corner = p.floor();
+        let seed = u64::from(seed).wrapping_mul(0xD6E8_FEB8_6659_FD93);
+        Some(Cell { corner: corner.to_array().map(|c| c as i64 as u64), f: p - corner, seed })
+    }
+
+    #[inline]
+    fn hash(&self, i: u64, j: u64, k: u64) -> u64 {
+        let [x, y, z] = self.corner;
+        hash(x.wrapping_add(i), y.wrapping_add(j), z.wrapping_add(k), self.seed)
+    }
+}
+
+/// [`perlin`] and its gradient.
+pub(crate) fn perlin_gradient(p: DVec3, seed: u32) -> (f64, DVec3) {
+    let Some(cell) = Cell::of(p, seed) else { return (0.0, DVec3::ZERO) };
+    let f = cell.f;
     let blend = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
-    let [x, y, z] = cell.to_array().map(|c| c as i64 as u64);
-    let seed = u64::from(seed).wrapping_mul(0xD6E8_FEB8_6659_FD93);
-    let corner = |i: u64, j: u64, k: u64| {
-        let hash = hash(x.wrapping_add(i), y.wrapping_add(j), z.wrapping_add(k), seed);
-        gradient(hash, f - DVec3::new(i as f64, j as f64, k as f64))
-    };
+    let slope = 30.0 * f * f * (f * (f - 2.0) + 1.0);
+    let (mut value, mut sum) = (0.0, DVec3::ZERO);
+    for corner in 0..8u64 {
+        let bits = [corner & 1, corner >> 1 & 1, corner >> 2];
+        let offset = DVec3::from_array(bits.map(|bit| bit as f64));
+        let hash = cell.hash(bits[0], bits[1], bits[2]);
+        let edge = DVec3::new(gradient(hash, DVec3::X), gradient(hash, DVec3::Y), gradient(hash, DVec3::Z));
+        let along = edge.dot(f - offset);
+        // Blend weights of the corner and their derivatives, by axis.
+        let w = DVec3::ONE - offset + (2.0 * offset - 1.0) * blend;
+        let dw = (2.0 * offset - 1.0) * slope;
+        value += w.x * w.y * w.z * along;
+        sum += DVec3::new(dw.x * w.y * w.z, w.x * dw.y * w.z, w.x * w.y * dw.z) * along + edge * (w.x * w.y * w.z);
+    }
+    (value, sum)
+}
+
+/// Noise at a point; mean 0 over space, feature size 1. Zero beyond 2^52.
+pub fn perlin(p: DVec3, seed: u32) -> f64 {
+    let Some(cell) = Cell::of(p, seed) else { return 0.0 };
+    let f = cell.f;
+    let blend = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
+    let corner = |i: u64, j: u64, k: u64| gradient(cell.hash(i, j, k), f - DVec3::new(i as f64, j as f64, k as f64));
     let lerp = |a: f64, b: f64, t: f64| a + t * (b - a);
     let row = |j, k| lerp(corner(0, j, k), corner(1, j, k), blend.x);
     let plane = |k| lerp(row(0, k), row(1, k), blend.y);
@@ -195,7 +250,6 @@ mod tests {
     #[test]
     fn values_are_what_they_always_were() {
         let values: Vec<f64> = points(3).map(|p| perlin(p * 0.37, 0)).collect();
-        let again: Vec<f64> = points(3).map(|p| perlin(p * 0.37, 0)).collect();
-        assert_eq!(values, again);
+        assert_eq!(values, [0.0, -0.320_741_870_012_281_3, -0.526_232_156_914_884]);
     }
 }

@@ -284,7 +284,8 @@ fn what_varies_reads_back() {
     let text = format!(
         "ir 1\nbsdf b0 = varying(part(oren_nayar(reflectance: constant(0.5), sigma: 0.0), weight: {long}, reflectance: \
          blend(term(expression(u), constant(1.0)), term({long}, constant(0.5))), sigma: expression(v)), \
-         part(phong(reflectance: constant(0.5), exponent: 1.0), weight: expression(1.0), exponent: expression(u)), \
+         part(phong(reflectance: constant(0.5), exponent: 1.0), weight: expression(1.0), exponent: expression(u), height: expression(v), normal: \
+         normal(expression(u), expression(v), expression(1.0))), \
          part({rough}, weight: expression(1.0), roughness: expression(u), across: expression(v)), \
          at: [1.0, 2.0, 3.0])\n%0 = sphere(radius: 1.0) @0:0..1\nroot %0\n"
     );

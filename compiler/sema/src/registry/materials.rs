@@ -19,6 +19,7 @@ pub fn builtins() -> Vec<Builtin> {
     list.extend(bsdfs());
     list.extend(super::surface_models::builtins());
     list.extend(super::mixtures::builtins());
+    list.extend(super::mixtures::reliefs());
     list.extend(not_yet());
     list
 }

@@ -49,6 +49,48 @@ pub fn builtins() -> Vec<Builtin> {
     ]
 }
 
+/// Bsdfs with another shading normal.
+pub fn reliefs() -> Vec<Builtin> {
+    let of = |name, doc| {
+        Builtin::new(name, doc).module(MATERIAL).param(Param::new("bsdf", Type::Bsdf, "what is lit that way"))
+    };
+    vec![
+        of("bumped", "A bsdf on a surface that seems to stand out by a height: `lambert(0.5) |> bumped(0.01 * noise(position * 20))`. Light is \
+            scattered as by the raised surface; outlines and shadows stay.")
+            .param(Param::new("height", Texture(TextureKind::Float), "along the normal, where the material is attached"))
+            .runs(Type::Bsdf, |m, args, site| {
+                let height = m.scalar(&args[1]);
+                let parameter = Parameter::Height(m.expression(height, site.args[1])?);
+                relief(m, &args[0], &parameter)
+            }),
+        of("normal_mapped", "A bsdf on a surface with a normal from a map.")
+            .param(Param::new("normal", Texture(TextureKind::Vec3), "along growing u, across it, along the normal; of any length"))
+            .runs(Type::Bsdf, |m, args, site| {
+                let mut normal = Vec::new();
+                for component in m.components(&args[1]) {
+                    normal.push(m.expression(component, site.args[1])?);
+                }
+                let Ok(normal) = <[_; 3]>::try_from(normal) else { panic!("the checker let pass a vector of another size") };
+                relief(m, &args[0], &Parameter::Normal(normal))
+            }),
+    ]
+}
+
+/// The bsdf, each of its parts with this parameter.
+fn relief(m: &mut Machine<'_>, on: &Value, parameter: &Parameter) -> Eval {
+    let index = on.as_attributes().bsdf.unwrap_or_default();
+    let mut parts = match m.bsdfs[index as usize].clone() {
+        Bsdf::Varying(inner) => inner.parts.clone(),
+        plain => vec![Part { weight: arsc_ir::Expression::constant(1.0), bsdf: plain, parameters: Vec::new() }],
+    };
+    for part in &mut parts {
+        // The outermost counts.
+        part.parameters.retain(|old| !matches!(old, Parameter::Height(_) | Parameter::Normal(_)));
+        part.parameters.push(parameter.clone());
+    }
+    bsdf(m, varying(parts))
+}
+
 fn pairs_of(list: &Value, site: &Site) -> Eval<Vec<(Value, u32)>> {
     let list = list.as_list();
     if list.is_empty() || list.len() > MAX_PARTS {
