@@ -23,7 +23,7 @@ use crate::cells::{Cell, CellLeaf, CellSet, Line, PAD, Window, essential, leaf_t
 use crate::expression::{Expression, Token, Word, substitute};
 use crate::level::Solids;
 use crate::query::{Mode, Query};
-use crate::solid::{SolidModel, SolidRay};
+use crate::solid::SolidModel;
 use crate::transition::Transition;
 
 /// A triangle of a mesh leaf, on the boundary of the solid in some place at least.
@@ -168,7 +168,8 @@ impl Facet {
         query.tests += 1;
         let placed = &solids.models[self.solid as usize].leaves[self.leaf as usize];
         let Some(mesh) = mesh_of(placed) else { return };
-        let (ray, view) = (solids.near_ray(self.solid, query), query.view);
+        let mut moved = None;
+        let (ray, start) = solids.near(self.solid, &query.view, &mut moved);
         let map = placed.object_from_world();
         let line = Projection::new(map.transform_point3(ray.origin), map.transform_vector3(ray.dir));
         let Some(Passage { t, enters, is_marginal }) = mesh.crossing(&line, self.triangle) else { return };
@@ -179,24 +180,25 @@ impl Facet {
         };
         let (leaf, face, entering) = (self.leaf, self.triangle, enters != flipped);
         let transition = Transition { t, leaf, face, entering, flipped, shared: false };
-        query.offer(solids.candidate(self.solid, transition, &ray, &view));
+        query.offer(solids.candidate(self.solid, transition, start, &query.view));
     }
 
     /// The stretch in which the cluster of coincident crossings that one at `t` is in begins: at most a tolerance before.
-    fn window(&self, solids: &Solids, ray: &SolidRay, t: f64) -> Option<Window> {
+    fn window(&self, solids: &Solids, start: f64, end: f64, t: f64) -> Option<Window> {
         let tolerance = solids.tolerance(self.solid);
-        let (low, high) = ((t - 1.5 * tolerance).max(ray.start), (t + 0.5 * tolerance).min(ray.end));
-        (low <= high).then_some(Window { low, high, start: ray.start, tolerance })
+        let (low, high) = ((t - 1.5 * tolerance).max(start), (t + 0.5 * tolerance).min(end));
+        (low <= high).then_some(Window { low, high, start, tolerance })
     }
 
     /// Asks the whole mesh about what happens at `t`: crossings within the tolerance cancel in pairs.
     #[cold]
     fn visit_leaf(&self, solids: &Solids, t: f64, flipped: bool, query: &mut Query) {
-        let (ray, view) = (solids.near_ray(self.solid, query), query.view);
-        let Some(window) = self.window(solids, &ray, t) else { return };
+        let (view, mut moved) = (query.view, None);
+        let (ray, start) = solids.near(self.solid, &view, &mut moved);
+        let Some(window) = self.window(solids, start, start + query.limit() * view.scale, t) else { return };
         let model = &solids.models[self.solid as usize];
         let leaf = CellLeaf::new(self.leaf, &model.leaves);
-        let line = Line::new(model, self.solid, &ray, &view);
+        let line = Line::new(model, self.solid, ray, &view);
         let mut found: SmallVec<[Transition; 4]> = SmallVec::new();
         let scratch = &mut query.scratch;
         leaf_transitions(&leaf, flipped, &line, &window, scratch, |transition| {
@@ -204,20 +206,21 @@ impl Facet {
             true
         });
         for transition in found {
-            query.offer(solids.candidate(self.solid, transition, &ray, &view));
+            query.offer(solids.candidate(self.solid, transition, start, &view));
         }
     }
 
     /// Asks the cell about what happens at `t`.
     fn visit_cell(&self, solids: &Solids, set: &CellSet, cell: &Cell, t: f64, query: &mut Query) {
-        let (ray, view) = (solids.near_ray(self.solid, query), query.view);
-        let Some(window) = self.window(solids, &ray, t) else { return };
-        let line = Line::new(&solids.models[self.solid as usize], self.solid, &ray, &view);
+        let (view, mut moved) = (query.view, None);
+        let (ray, start) = solids.near(self.solid, &view, &mut moved);
+        let Some(window) = self.window(solids, start, start + query.limit() * view.scale, t) else { return };
+        let line = Line::new(&solids.models[self.solid as usize], self.solid, ray, &view);
         let all = query.mode == Mode::Collect;
         let mut found: SmallVec<[Transition; 4]> = SmallVec::new();
         set.transitions(cell, &line, &window, &mut query.scratch, all, |transition| found.push(transition));
         for transition in found {
-            query.offer(solids.candidate(self.solid, transition, &ray, &view));
+            query.offer(solids.candidate(self.solid, transition, start, &view));
         }
     }
 }

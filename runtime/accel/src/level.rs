@@ -7,7 +7,7 @@ use arsc_geometry::Aabb;
 
 use crate::facets::Facet;
 use crate::nearest::{Candidate, Target};
-use crate::query::{Extent, Mode, Query, View};
+use crate::query::{Extent, Mode, PreparedRay, Query, View};
 use crate::solid::{Nearness, SolidModel, SolidRay};
 use crate::strategies::{Members, SolidTracer, Tracer};
 use crate::transition::Transition;
@@ -53,7 +53,13 @@ impl Solids {
     #[inline]
     pub fn near_ray(&self, solid: u32, query: &Query) -> SolidRay {
         let view = &query.view;
-        self.frames[solid as usize].nearness.near_ray(view.origin, view.dir, query.limit() * view.scale)
+        self.frames[solid as usize].nearness.near_ray(view.ray.origin, view.ray.dir, query.limit() * view.scale)
+    }
+
+    /// The ray of a view as `solid` is met by it: [`Nearness::near`].
+    #[inline(always)]
+    pub fn near<'a>(&self, solid: u32, view: &'a View, moved: &'a mut Option<PreparedRay>) -> (&'a PreparedRay, f64) {
+        self.frames[solid as usize].nearness.near(view, moved)
     }
 
     #[inline]
@@ -67,11 +73,11 @@ impl Solids {
         query.only.is_some_and(|only| only != query.view.first_solid + solid)
     }
 
-    /// What a transition along `ray` is in the scene.
+    /// What a transition is in the scene, along a ray whose own start is at the parameter `start`.
     #[inline]
-    pub fn candidate(&self, solid: u32, transition: Transition, ray: &SolidRay, view: &View) -> Candidate {
+    pub fn candidate(&self, solid: u32, transition: Transition, start: f64, view: &View) -> Candidate {
         Candidate {
-            t: (transition.t - ray.start) * view.inverse_scale,
+            t: (transition.t - start) * view.inverse_scale,
             part: view.first_part + self.frames[solid as usize].first_part + transition.leaf,
             tolerance: self.frames[solid as usize].tolerance * view.inverse_scale,
             target: Target::Solid { solid: view.first_solid + solid, transition },
@@ -146,6 +152,11 @@ impl Level {
     pub fn bytes(&self) -> usize {
         let leaves: usize = self.solids.models.iter().map(|s| size_of_val(&s.leaves[..])).sum();
         self.tracer.get().bytes() + leaves
+    }
+
+    /// There is nothing for [`Level::visit_open`] to meet.
+    pub fn is_closed(&self) -> bool {
+        matches!(&self.tracer, Tracer::Local(local) if local.is_closed())
     }
 
     /// Meets what Embree does not hold.
@@ -228,6 +239,8 @@ const PRIMITIVES: GeometryId = GeometryId(0);
 pub struct Prototype {
     pub level: Level,
     extent: Extent,
+    /// Embree holds everything.
+    is_closed: bool,
 }
 
 impl Prototype {
@@ -240,7 +253,9 @@ impl Prototype {
         let level = Level::new(vec![solid], strategy, budget);
         let extent = Extent::new(level.bounds());
         let (primitives, facets) = (level.primitive_count(), level.facets().len());
-        let mut builder = SceneBuilder::new(device, Arc::new(Prototype { level, extent }), BuildQuality::High)?;
+        let is_closed = level.is_closed();
+        let prototype = Arc::new(Prototype { level, extent, is_closed });
+        let mut builder = SceneBuilder::new(device, prototype, BuildQuality::High)?;
         builder.user_geometry(primitives)?;
         if facets > 0 {
             builder.user_geometry(facets)?;
@@ -258,9 +273,11 @@ impl Prototype {
     /// Traces the query, whose view is this frame's.
     pub fn trace(scene: &EmbreeScene<Prototype>, query: &mut Query) {
         let this = scene.callbacks();
-        this.level.visit_open(query);
-        if query.blocked {
-            return;
+        if !this.is_closed {
+            this.level.visit_open(query);
+            if query.blocked {
+                return;
+            }
         }
         this.level.traverse(scene, &this.extent, query);
     }

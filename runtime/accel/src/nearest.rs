@@ -58,17 +58,23 @@ pub struct Nearest {
     t_max: f64,
     /// The greatest tolerance of any solid: so far behind the best one may still coincide with it.
     slack: f64,
+    limit: f64,
 }
 
 impl Nearest {
     pub fn new(t_max: f64, slack: f64) -> Nearest {
-        Nearest { best: None, tie: 0.0, t_max, slack }
+        Nearest { best: None, tie: 0.0, t_max, slack, limit: t_max }
     }
 
     /// Beyond this nothing matters any more.
     #[inline]
     pub fn limit(&self) -> f64 {
-        self.best.map_or(self.t_max, |best| best.t + best.tolerance.max(self.slack))
+        self.limit
+    }
+
+    fn set(&mut self, best: Candidate) {
+        self.limit = best.t + best.tolerance.max(self.slack);
+        self.best = Some(best);
     }
 
     /// The candidate is of the solid that the best is of, and within the tolerance of it.
@@ -88,10 +94,7 @@ impl Nearest {
         if !(candidate.t > 0.0 && candidate.t < self.t_max) {
             return;
         }
-        let Some(best) = &mut self.best else {
-            self.best = Some(candidate);
-            return;
-        };
+        let Some(best) = &self.best else { return self.set(candidate) };
         let tolerance = best.tolerance.max(candidate.tolerance);
         let apart = candidate.t - best.t;
         if apart.abs() <= tolerance {
@@ -99,10 +102,10 @@ impl Nearest {
                 self.tie = self.tie.max(apart.abs());
             }
             if candidate.lies_upon(best) {
-                *best = candidate;
+                self.set(candidate);
             }
         } else if apart < 0.0 {
-            *best = candidate;
+            self.set(candidate);
             self.tie = 0.0;
         }
     }

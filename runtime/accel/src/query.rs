@@ -28,15 +28,25 @@ pub enum Mode {
     Collect,
 }
 
-/// The ray in a frame: the world's, or an instance's.
+/// A ray with what is computed of it once. It is handed on by reference: copies of what has just been written stall.
 #[derive(Clone, Copy, Debug)]
-pub struct View {
+pub struct PreparedRay {
     pub origin: DVec3,
     /// Unit.
     pub dir: DVec3,
     pub inverse_dir: DVec3,
     /// `1 / dir²`: one, but for the rounding.
     pub inverse_square: f64,
+    /// Not in parallel to any plane of axes: `inverse_dir` is finite.
+    pub is_oblique: bool,
+}
+
+/// The ray in a frame: the world's, or an instance's.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    pub ray: PreparedRay,
+    /// Largest coordinate of the origin.
+    pub reach: f64,
     /// Lengths here per unit of the ray's `t`, and the reciprocal.
     pub scale: f64,
     pub inverse_scale: f64,
@@ -60,11 +70,17 @@ impl View {
     /// `ray` is in the world, its `dir` unit.
     #[inline]
     pub fn world(ray: &Ray) -> View {
+        let inverse_dir = ray.dir.recip();
         View {
-            origin: ray.origin,
-            dir: ray.dir,
-            inverse_dir: ray.dir.recip(),
-            inverse_square: 1.0 / ray.dir.length_squared(),
+            ray: PreparedRay {
+                origin: ray.origin,
+                dir: ray.dir,
+                inverse_dir,
+                inverse_square: 1.0 / ray.dir.length_squared(),
+                // Zero, unless something is infinite.
+                is_oblique: (inverse_dir * 0.0).element_sum() == 0.0,
+            },
+            reach: ray.origin.abs().max_element(),
             scale: 1.0,
             inverse_scale: 1.0,
             first_solid: 0,
@@ -77,7 +93,8 @@ impl View {
     /// The single precision segment through what `extent` holds, from close before it; `None` when it is missed.
     #[inline(always)]
     pub fn segment(&mut self, extent: &Extent, limit: f64) -> Option<Segment> {
-        let (low, high) = slab(&extent.bounds, self.origin, self.inverse_dir);
+        let PreparedRay { origin, dir, .. } = self.ray;
+        let (low, high) = slab(&extent.bounds, origin, self.ray.inverse_dir);
         let high = high.min(limit * self.scale);
         if !(low <= high && high >= 0.0) {
             return None;
@@ -88,8 +105,8 @@ impl View {
         self.slack = 2.0 * extent.pad;
         let single = |v: DVec3| v.as_vec3().to_array();
         Some(Segment {
-            origin: single(self.origin + self.dir * self.shift),
-            dir: single(self.dir),
+            origin: single(origin + dir * self.shift),
+            dir: single(dir),
             t_near: 0.0,
             t_far: self.far(high * self.inverse_scale),
         })

@@ -244,17 +244,17 @@ impl Scene {
         self.trace(Mode::Nearest, ray, None, |query| {
             let best = query.nearest.best.as_ref()?;
             Some(self.complete(best, query.nearest.tie, ray))
-        })?
+        })
     }
 
     /// Whether anything is met with `0 < t < t_max`.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.trace(Mode::Occluded, ray, None, |query| query.blocked).unwrap_or(false)
+        self.trace(Mode::Occluded, ray, None, |query| query.blocked)
     }
 
     /// Leaves (in every cell anew) and surfaces that [`Scene::intersect`] tests for this ray.
     pub fn count_tests(&self, ray: &Ray) -> u32 {
-        self.trace(Mode::Nearest, ray, None, |query| query.tests).unwrap_or(0)
+        self.trace(Mode::Nearest, ray, None, |query| query.tests)
     }
 
     /// All stretches of the ray inside solids, sorted by solid, then by `t`.
@@ -262,7 +262,6 @@ impl Scene {
         // To infinity, so that a bounded solid is known to be left again.
         let endless = Ray { t_max: f64::INFINITY, ..*ray };
         self.trace(Mode::Collect, &endless, None, |query| self.paired(&mut query.scratch.collected, ray))
-            .unwrap_or_default()
     }
 
     /// The stretches between transitions of all solids.
@@ -313,18 +312,18 @@ impl Scene {
         }
     }
 
-    /// What `answer` makes of the traced query; `None` for rays that cannot be traced.
+    /// What `answer` makes of the traced query; nothing for rays that cannot be traced.
     #[inline]
-    fn trace<R>(&self, mode: Mode, ray: &Ray, only: Option<u32>, answer: impl FnOnce(&mut Query) -> R) -> Option<R> {
+    fn trace<R: Default>(&self, mode: Mode, ray: &Ray, only: Option<u32>, answer: impl FnOnce(&mut Query) -> R) -> R {
         if !is_traceable(ray) {
-            return None;
+            return R::default();
         }
         let mut query = Query::new(mode, ray, self.slack, SCRATCH.take().unwrap_or_default());
         query.only = only;
         World::trace(&self.world, &mut query);
         let result = answer(&mut query);
         SCRATCH.set(Some(query.scratch));
-        Some(result)
+        result
     }
 
     /// A point uniform over the part's object space area (or the faces given to [`Scene::sample_only`]), if it is on the boundary of the part's solid and its own there;
@@ -362,7 +361,7 @@ impl Scene {
         self.trace(Mode::Nearest, &ray, Some(solid), |query| {
             let best = query.nearest.best.filter(|best| best.part == part.0)?;
             Some(self.complete(&best, query.nearest.tie, &ray))
-        })?
+        })
     }
 
     /// Density with which [`Scene::sample_part`] gives the point of this hit, per unit of world area; zero for
@@ -565,15 +564,21 @@ impl Member {
         }
     }
 
+    /// Rays that leave from where faces coincide must start beyond all of them.
+    #[cold]
+    fn greatest_error(&self, point: &Foot) -> f64 {
+        let others = self.model.leaves.iter().map(|leaf| leaf.error_at(point.p));
+        others.fold(point.p_error, f64::max)
+    }
+
     /// The surface point of a transition at `p`, in the world.
+    #[inline]
     fn surface(&self, transition: &Transition, p: DVec3) -> Foot {
         let leaf = &self.model.leaves[transition.leaf as usize];
         let inner = self.frame.as_ref().map_or(p, |frame| frame.object_from_world.transform_point3(p));
         let mut point = leaf.foot(inner, transition.face);
         if transition.shared {
-            // Rays that leave must start beyond the other coincident faces as well.
-            let others = self.model.leaves.iter().map(|leaf| leaf.error_at(point.p));
-            point.p_error = others.fold(point.p_error, f64::max);
+            point.p_error = self.greatest_error(&point);
         }
         self.frame.as_ref().map_or(point, |frame| frame.to_world(&point))
     }
@@ -584,7 +589,9 @@ fn on_side_of(ns: DVec3, n: DVec3) -> DVec3 {
 }
 
 fn is_traceable(ray: &Ray) -> bool {
-    ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != DVec3::ZERO && ray.t_max > 0.0
+    // Zero for finite numbers, no number for others.
+    let zero = (ray.origin * 0.0 + ray.dir * 0.0).element_sum();
+    zero == 0.0 && ray.dir != DVec3::ZERO && ray.t_max > 0.0
 }
 
 fn area_sample(point: &SurfacePoint, ng: DVec3, pdf_area: f64, material: MaterialIndex) -> AreaSample {

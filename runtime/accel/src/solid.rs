@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use arsc_geometry::{Aabb, Placed};
 
+use crate::query::{PreparedRay, View};
 use crate::{AccelError, Csg, Expression, MaterialIndex, Solid};
 
 /// Farthest origin, in magnitudes.
@@ -76,6 +77,16 @@ impl SolidModel {
 }
 
 impl Nearness {
+    /// The ray of a view with its origin brought near, in `moved` if need be, and the parameter of its start.
+    #[inline(always)]
+    pub fn near<'a>(&self, view: &'a View, moved: &'a mut Option<PreparedRay>) -> (&'a PreparedRay, f64) {
+        if view.reach <= self.reach {
+            return (&view.ray, 0.0);
+        }
+        let SolidRay { origin, start, .. } = self.near_ray(view.ray.origin, view.ray.dir, f64::INFINITY);
+        (moved.insert(PreparedRay { origin, ..view.ray }), start)
+    }
+
     /// The ray with its origin brought near. `dir` is unit in the solid's frame.
     #[inline]
     pub fn near_ray(&self, origin: DVec3, dir: DVec3, t_max: f64) -> SolidRay {

@@ -90,6 +90,8 @@ pub struct World {
     /// Strategy `native`: all surfaces and instances that are finite.
     pub plain: Option<Plain>,
     extent: Extent,
+    /// There is nothing for [`World::visit_open`] to meet.
+    is_closed: bool,
 }
 
 /// A triangle of a small surface, ready for rays.
@@ -144,6 +146,7 @@ impl World {
             open_surfaces: vec![],
             plain: None,
             extent: Extent::new(Aabb::EMPTY),
+            is_closed: false,
         };
         let mut bounds = world.level.bounds();
         let mut finite_surfaces = vec![];
@@ -166,6 +169,7 @@ impl World {
             }
         }
         world.extent = Extent::new(bounds);
+        world.is_closed = world.level.is_closed() && world.open_surfaces.is_empty() && world.open_instances.is_empty();
         if world.level.is_native() {
             world.plain = Some(world.plain_items(&finite_surfaces));
             world.placed.clear();
@@ -270,9 +274,11 @@ impl World {
     /// Traces a query from the world's frame.
     pub fn trace(scene: &EmbreeScene<World>, query: &mut Query) {
         let this = scene.callbacks();
-        this.visit_open(query);
-        if query.blocked {
-            return;
+        if !this.is_closed {
+            this.visit_open(query);
+            if query.blocked {
+                return;
+            }
         }
         match &this.plain {
             Some(plain) => plain.visit(query, |item, query| this.visit_item(item, query)),

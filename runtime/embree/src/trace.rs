@@ -18,8 +18,10 @@ pub struct Segment {
 impl Segment {
     #[inline]
     fn is_traceable(&self) -> bool {
-        let finite = |v: &[f32; 3]| v.iter().all(|x| x.is_finite());
-        finite(&self.origin) && finite(&self.dir) && self.t_near >= 0.0 && self.t_far >= self.t_near
+        // Zero for finite numbers, no number for others: one comparison for all.
+        let [[a, b, c], [d, e, f]] = [self.origin, self.dir];
+        let is_finite = 0.0 * a + 0.0 * b + 0.0 * c + (0.0 * d + 0.0 * e + 0.0 * f) == 0.0;
+        is_finite && self.t_near >= 0.0 && self.t_far >= self.t_near
     }
 
     #[inline]

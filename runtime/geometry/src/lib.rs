@@ -57,6 +57,6 @@ pub use prism::Prism;
 pub use profile::{MOST_PROFILE_POINTS, ProfileError};
 pub use ray::Ray;
 pub use shape::{LocalPoint, Shape};
-pub use span::Span;
+pub use span::{Span, oblique_face, oblique_span};
 pub use superquadric::{EXPONENTS, Superquadric};
 pub use triangle_mesh::{TriangleMesh, TrianglePoint};

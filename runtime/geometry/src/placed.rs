@@ -177,7 +177,11 @@ impl Placed {
     }
 
     /// The interpolated normal of a face near `p`, unit, outward; `None` where it is the surface's own.
+    #[inline]
     pub fn shading_normal(&self, p: DVec3, face: u32) -> Option<DVec3> {
+        if !matches!(self.shape, Shape::Mesh(_)) {
+            return None;
+        }
         let local = self.shape.shading_normal(self.object_from_world.transform_point3(p), face)?;
         Some(self.world_normal(local))
     }

@@ -72,6 +72,37 @@ impl Span {
     }
 }
 
+/// What [`Span::of_box`] finds for a line none of whose reciprocals is infinite, without faces: entry and exit, the entry not before
+/// the exit where the box is missed.
+#[inline(always)]
+pub fn oblique_span(min: DVec3, max: DVec3, origin: DVec3, inverse_dir: DVec3) -> (f64, f64) {
+    let (mut t0, mut t1) = (f64::NEG_INFINITY, f64::INFINITY);
+    for axis in 0..3 {
+        let (enter, exit) = oblique_slab(min, max, origin, inverse_dir, axis);
+        t0 = if enter > t0 { enter } else { t0 };
+        t1 = if exit < t1 { exit } else { t1 };
+    }
+    (t0, t1)
+}
+
+/// The face through which such a line enters (or leaves) the box at `t`, an end of its [`oblique_span`].
+#[inline]
+pub fn oblique_face(min: DVec3, max: DVec3, origin: DVec3, inverse_dir: DVec3, t: f64, enters: bool) -> u32 {
+    let met = |&axis: &usize| {
+        let (enter, exit) = oblique_slab(min, max, origin, inverse_dir, axis);
+        t == if enters { enter } else { exit }
+    };
+    let axis = (0..3).find(met).unwrap_or(0);
+    2 * axis as u32 + u32::from(enters != (inverse_dir[axis] > 0.0))
+}
+
+#[inline(always)]
+fn oblique_slab(min: DVec3, max: DVec3, origin: DVec3, inverse_dir: DVec3, axis: usize) -> (f64, f64) {
+    let (o, inverse) = (origin[axis], inverse_dir[axis]);
+    let (near, far) = if inverse > 0.0 { (min[axis], max[axis]) } else { (max[axis], min[axis]) };
+    ((near - o) * inverse, (far - o) * inverse)
+}
+
 impl From<Option<Span>> for Crossings {
     #[inline]
     fn from(span: Option<Span>) -> Crossings {

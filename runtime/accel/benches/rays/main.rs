@@ -12,7 +12,10 @@ use std::time::Instant;
 use arsc_accel::{BuildOptions, Ray, Scene, SceneGeometry, Strategy};
 use glam::DVec3;
 
-const WIDTH: usize = 500;
+/// Side of a block of pixels, and how many are side by side.
+const BLOCK: usize = 32;
+const BLOCKS: usize = 20;
+const WIDTH: usize = BLOCK * BLOCKS;
 /// Seconds of CPU per measurement, about.
 const BUDGET: f64 = 1.0;
 
@@ -23,11 +26,11 @@ fn cpu_seconds(since: Instant) -> f64 {
     nanoseconds.map_or(since.elapsed().as_secs_f64(), |ns| ns * 1e-9)
 }
 
-/// Pixels in a scattered order, so that any number of them covers the picture.
+/// Pixels by blocks, as renderers go through a picture.
 fn pixel(i: usize) -> (f64, f64) {
-    let n = WIDTH * WIDTH;
-    let j = i * 104_729 % n;
-    ((j % WIDTH) as f64 + 0.5, (j / WIDTH) as f64 + 0.5)
+    let (block, within) = (i / (BLOCK * BLOCK) % (BLOCKS * BLOCKS), i % (BLOCK * BLOCK));
+    let (x, y) = (block % BLOCKS * BLOCK + within % BLOCK, block / BLOCKS * BLOCK + within / BLOCK);
+    (x as f64 + 0.5, y as f64 + 0.5)
 }
 
 /// Million rays per CPU-second and mean tests per primary ray.

@@ -31,8 +31,8 @@ struct Distance<'a> {
 impl<'a> Distance<'a> {
     fn new(leaf: &'a Placed, line: &Line, tolerance: f64) -> Distance<'a> {
         let map = leaf.object_from_world();
-        let dir = map.transform_vector3(line.dir);
-        Distance { leaf, origin: map.transform_point3(line.origin), dir, speed: dir.length(), tolerance }
+        let dir = map.transform_vector3(line.ray.dir);
+        Distance { leaf, origin: map.transform_point3(line.ray.origin), dir, speed: dir.length(), tolerance }
     }
 
     /// The state throughout the stretch, if the surface is certainly beyond it.

@@ -8,6 +8,7 @@
 mod build;
 mod deferred;
 mod dominance;
+mod first;
 mod query;
 mod split;
 mod truth_table;
@@ -16,6 +17,8 @@ use arsc_geometry::{Aabb, Direct, Placed};
 use glam::DVec3;
 
 use crate::expression::Token;
+
+use first::BallPair;
 
 pub use build::{append_outer, append_solid, core, essential, leaves_of};
 pub use query::{Entry, Line, Window, entry, leaf_transitions, union_transitions};
@@ -40,8 +43,12 @@ pub struct Cell {
     code: u64,
     /// With a truth table: the kernels of the leaves. Otherwise where those are listed, and the number of tokens.
     ids: [u32; TABLE_LEAVES],
+    /// With a truth table over balls and upright boxes: the first of its balls in [`CellSet`].
+    pairs: u32,
     /// All leaves are balls or upright boxes.
     is_plain: bool,
+    /// Slots that hold boxes, if it is plain.
+    boxes: u8,
 }
 
 /// The leaves of a cell.
@@ -118,6 +125,8 @@ pub struct CellSet {
     kernels: Vec<CellLeaf>,
     /// Kernels of the leaves of cells with many of them, ascending.
     ids: Vec<u32>,
+    /// Balls of plain cells with truth tables, by slots.
+    pairs: Vec<BallPair>,
     /// Expressions of cells with many leaves, over positions in the cell's leaf list.
     tokens: Vec<Token>,
 }
@@ -160,6 +169,7 @@ impl CellSet {
         size_of_val(&self.cells[..])
             + size_of_val(&self.kernels[..])
             + size_of_val(&self.ids[..])
+            + size_of_val(&self.pairs[..])
             + size_of_val(&self.tokens[..])
     }
 
@@ -189,7 +199,16 @@ impl CellSet {
             matches!(self.kernels[(first + leaf) as usize].kernel, Kernel::Ball { .. } | Kernel::Box { .. })
         };
         let is_plain = leaves.iter().all(plain);
-        self.cells.push(Cell { bounds, solid, leaf_count: leaves.len() as u32, code, ids, is_plain });
+        let (pairs, mut boxes) = (self.pairs.len() as u32, 0);
+        if is_plain && leaves.len() <= TABLE_LEAVES {
+            let kernel = |slot: usize| leaves.get(slot).map(|leaf| &self.kernels[(first + leaf) as usize].kernel);
+            for slot in 0..leaves.len() {
+                boxes |= u8::from(matches!(kernel(slot), Some(Kernel::Box { .. }))) << slot;
+            }
+            let slots = (0..leaves.len()).step_by(2);
+            self.pairs.extend(slots.map(|slot| BallPair::new([kernel(slot), kernel(slot + 1)])));
+        }
+        self.cells.push(Cell { bounds, solid, leaf_count: leaves.len() as u32, code, ids, pairs, is_plain, boxes });
         (self.cells.len() - 1) as u32
     }
 }

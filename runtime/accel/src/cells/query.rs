@@ -1,16 +1,16 @@
 //! A ray through one cell.
 
 use arsc_geometry::{Crossings, Span};
-use glam::DVec3;
 use smallvec::SmallVec;
 
 use crate::cells::deferred::{Deferral, constant_state};
+use crate::cells::first::first_of_spans;
 use crate::cells::{Cell, CellLeaf, CellSet, Code, Kernel, Leaves, TABLE_LEAVES};
 use crate::coincidence::{Event, Plain, States, settle};
 use crate::counted::Counted;
 use crate::expression::eval;
-use crate::query::{Scratch, View};
-use crate::solid::{SolidModel, SolidRay};
+use crate::query::{PreparedRay, Scratch, View};
+use crate::solid::SolidModel;
 use crate::transition::Transition;
 
 /// From so many crossings on, values are kept up to date instead of computed anew at each.
@@ -21,15 +21,11 @@ const FEW_EVENTS: usize = 16;
 /// Crossings in a cell: seldom more than fit.
 type Events = SmallVec<[Event; FEW_EVENTS]>;
 
-/// A ray in the frame of a cell's solid, with what is computed of it once.
+/// A ray in the frame of a cell's solid.
 #[derive(Clone, Copy)]
 pub struct Line<'a> {
     pub solid: &'a SolidModel,
-    pub origin: DVec3,
-    pub dir: DVec3,
-    pub inverse_dir: DVec3,
-    /// `1 / dir²`.
-    pub inverse_square: f64,
+    pub ray: &'a PreparedRay,
     /// Tells the solid's leaves from those of others in the scratch.
     pub key: u64,
 }
@@ -59,15 +55,8 @@ impl Window {
 impl<'a> Line<'a> {
     /// `ray` is that of `view`, near the solid, whose number in its level is `number`.
     #[inline]
-    pub fn new(solid: &'a SolidModel, number: u32, ray: &SolidRay, view: &View) -> Line<'a> {
-        Line {
-            solid,
-            origin: ray.origin,
-            dir: ray.dir,
-            inverse_dir: view.inverse_dir,
-            inverse_square: view.inverse_square,
-            key: u64::from(view.first_solid + number) << 32,
-        }
+    pub fn new(solid: &'a SolidModel, number: u32, ray: &'a PreparedRay, view: &View) -> Line<'a> {
+        Line { solid, ray, key: u64::from(view.first_solid + number) << 32 }
     }
 
     /// The leaf is costly, and its crossings are not known yet.
@@ -76,7 +65,7 @@ impl<'a> Line<'a> {
     }
 
     fn crossings(&self, leaf: &CellLeaf) -> Crossings {
-        self.solid.leaves[leaf.leaf as usize].crossings(self.origin, self.dir)
+        self.solid.leaves[leaf.leaf as usize].crossings(self.ray.origin, self.ray.dir)
     }
 
     #[inline(always)]
@@ -89,12 +78,11 @@ impl<'a> Line<'a> {
 
     /// The stretch in a ball or an upright box; empty for other leaves.
     #[inline(always)]
-    fn span(&self, leaf: &CellLeaf) -> Span {
+    pub fn span(&self, leaf: &CellLeaf) -> Span {
+        let PreparedRay { origin, dir, inverse_dir, inverse_square, .. } = *self.ray;
         match leaf.kernel {
-            Kernel::Ball { center, radius } => {
-                Span::of_ball_or_empty(center, radius, self.origin, self.dir, self.inverse_square)
-            }
-            Kernel::Box { min, max } => Span::of_box(min, max, self.origin, self.inverse_dir).unwrap_or(Span::EMPTY),
+            Kernel::Ball { center, radius } => Span::of_ball_or_empty(center, radius, origin, dir, inverse_square),
+            Kernel::Box { min, max } => Span::of_box(min, max, origin, inverse_dir).unwrap_or(Span::EMPTY),
             Kernel::Placed | Kernel::Costly => Span::EMPTY,
         }
     }
@@ -115,11 +103,39 @@ enum Met<'s> {
 }
 
 impl CellSet {
+    /// The first transition in the window.
+    #[inline]
+    pub fn first(&self, cell: &Cell, line: &Line, window: &Window, scratch: &mut Scratch) -> Option<Transition> {
+        if cell.is_plain
+            && let Code::Table(table) = self.code(cell)
+        {
+            let (leaves, pairs) = (self.leaves(cell), &self.pairs[cell.pairs as usize..]);
+            let first = if leaves.len() <= 2
+                && let Some(pairs) = pairs.first_chunk()
+            {
+                first_of_spans::<1>(cell, pairs, leaves, table, line, window)
+            } else if leaves.len() <= 4
+                && let Some(pairs) = pairs.first_chunk()
+            {
+                first_of_spans::<2>(cell, pairs, leaves, table, line, window)
+            } else if let Some(pairs) = pairs.first_chunk() {
+                first_of_spans::<3>(cell, pairs, leaves, table, line, window)
+            } else {
+                None
+            };
+            if let Some(first) = first {
+                return first;
+            }
+        }
+        let mut first = None;
+        self.transitions(cell, line, window, scratch, false, |transition| first = Some(transition));
+        first
+    }
+
     /// Calls `visit` for every transition in the window (`all`) or for the first, in order.
     ///
     /// Inside or outside at the window's beginning follows from the crossings before it, so a ray may start anywhere. A
     /// cluster that begins just before `low` belongs to the cell before; it is passed over as a whole.
-    #[inline]
     pub fn transitions(
         &self,
         cell: &Cell,

@@ -47,7 +47,7 @@ impl Collected {
                 continue;
             }
             let model = &*solids.models[solid as usize];
-            let ray = model.near_ray(query.view.origin, query.view.dir, end * query.view.scale);
+            let ray = model.near_ray(query.view.ray.origin, query.view.ray.dir, end * query.view.scale);
             evaluate(solids, solid, &self.operators[solid as usize], &ray, query, |line, scratch| {
                 for same in group.chunk_by(|a, b| a == b) {
                     scratch.gathered.cross(line, same[0].1);

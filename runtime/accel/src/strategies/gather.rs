@@ -23,7 +23,7 @@ pub struct SolidLine<'a> {
 impl<'a> SolidLine<'a> {
     /// `ray` has the direction of `view`.
     pub fn new(solid: &'a SolidModel, kernels: &'a [Kernel], ray: SolidRay, view: &View) -> SolidLine<'a> {
-        SolidLine { solid, kernels, ray, inverse_dir: view.inverse_dir, inverse_square: view.inverse_square }
+        SolidLine { solid, kernels, ray, inverse_dir: view.ray.inverse_dir, inverse_square: view.ray.inverse_square }
     }
 }
 

@@ -3,11 +3,10 @@
 use arsc_geometry::Aabb;
 
 use crate::Budget;
-use crate::cells::{self, CellSet, Line, Window};
+use crate::cells::{self, Cell, CellSet, Line, Window};
 use crate::facets::{self, Facet, mesh_of};
 use crate::level::Solids;
-use crate::query::{Extent, Mode, Query, slab};
-use crate::solid::SolidRay;
+use crate::query::{Extent, Mode, PreparedRay, Query, slab};
 use crate::strategies::{Members, SolidTracer, oracle};
 
 /// A solid, or the part of it beyond its core, that Embree cannot hold.
@@ -58,6 +57,11 @@ impl Local {
         local
     }
 
+    /// Embree holds everything.
+    pub fn is_closed(&self) -> bool {
+        self.open.is_empty()
+    }
+
     fn visit_whole(&self, solids: &Solids, solid: u32, query: &mut Query) {
         if solids.is_left_out(solid, query) {
             return;
@@ -65,46 +69,41 @@ impl Local {
         query.tests += solids.models[solid as usize].leaves.len() as u32;
         let (ray, view) = (solids.near_ray(solid, query), query.view);
         oracle::transitions(&solids.models[solid as usize], &ray, |transition| {
-            query.offer(solids.candidate(solid, transition, &ray, &view))
+            query.offer(solids.candidate(solid, transition, ray.start, &view))
         });
     }
 
-    /// `stretch` is where the ray is in the cell.
+    /// `stretch` gives where a ray is in the cell.
+    #[inline(always)]
     fn visit_cell(
-        &self,
         solids: &Solids,
         set: &CellSet,
-        cell: u32,
-        ray: &SolidRay,
-        stretch: (f64, f64),
+        cell: &Cell,
         query: &mut Query,
+        stretch: impl FnOnce(&PreparedRay) -> (f64, f64),
     ) {
-        let cell = &set.cells[cell as usize];
         if solids.is_left_out(cell.solid, query) {
             return;
         }
-        let view = query.view;
-        let low = stretch.0.max(ray.start);
-        let high = stretch.1.min(ray.end);
+        let end = query.limit() * query.view.scale;
+        let mut moved = None;
+        let (ray, start) = solids.near(cell.solid, &query.view, &mut moved);
+        let (low, high) = stretch(ray);
+        let (low, high) = (low.max(start), high.min(start + end));
         if low > high {
             return;
         }
         query.tests += cell.leaf_count();
-        let solid = &solids.models[cell.solid as usize];
-        let window = Window { low, high, start: ray.start, tolerance: solids.tolerance(cell.solid) };
-        let line = Line::new(solid, cell.solid, ray, &view);
+        let window = Window { low, high, start, tolerance: solids.tolerance(cell.solid) };
+        let line = Line::new(&solids.models[cell.solid as usize], cell.solid, ray, &query.view);
         if query.mode == Mode::Collect {
             let mut found = vec![];
             set.transitions(cell, &line, &window, &mut query.scratch, true, |transition| found.push(transition));
             for transition in found {
-                query.offer(solids.candidate(cell.solid, transition, ray, &view));
+                query.offer(solids.candidate(cell.solid, transition, start, &query.view));
             }
-            return;
-        }
-        let mut found = None;
-        set.transitions(cell, &line, &window, &mut query.scratch, false, |transition| found = Some(transition));
-        if let Some(transition) = found {
-            query.offer(solids.candidate(cell.solid, transition, ray, &view));
+        } else if let Some(transition) = set.first(cell, &line, &window, &mut query.scratch) {
+            query.offer(solids.candidate(cell.solid, transition, start, &query.view));
         }
     }
 }
@@ -141,13 +140,19 @@ impl SolidTracer for Local {
             match *open {
                 Open::Whole { solid } => self.visit_whole(solids, solid, query),
                 Open::Outer { cell, core } => {
-                    let ray = solids.near_ray(self.outer.cells[cell as usize].solid, query);
-                    let (low, high) = slab(&core, ray.origin, query.view.inverse_dir);
-                    if low <= high && !core.is_empty() {
-                        self.visit_cell(solids, &self.outer, cell, &ray, (f64::NEG_INFINITY, low), query);
-                        self.visit_cell(solids, &self.outer, cell, &ray, (high, f64::INFINITY), query);
-                    } else {
-                        self.visit_cell(solids, &self.outer, cell, &ray, (f64::NEG_INFINITY, f64::INFINITY), query);
+                    let cell = &self.outer.cells[cell as usize];
+                    // Before the core, and behind it.
+                    for behind in [false, true] {
+                        Local::visit_cell(solids, &self.outer, cell, query, |ray| {
+                            let (low, high) = slab(&core, ray.origin, ray.inverse_dir);
+                            let passes = low <= high && !core.is_empty();
+                            match behind {
+                                false if passes => (f64::NEG_INFINITY, low),
+                                false => (f64::NEG_INFINITY, f64::INFINITY),
+                                true if passes => (high, f64::INFINITY),
+                                true => (f64::INFINITY, f64::NEG_INFINITY),
+                            }
+                        });
                     }
                 }
             }
@@ -161,8 +166,6 @@ impl SolidTracer for Local {
         if query.probing {
             return;
         }
-        let ray = solids.near_ray(cell.solid, query);
-        let stretch = slab(&cell.bounds, ray.origin, query.view.inverse_dir);
-        self.visit_cell(solids, &self.cells, primitive, &ray, stretch, query);
+        Local::visit_cell(solids, &self.cells, cell, query, |ray| slab(&cell.bounds, ray.origin, ray.inverse_dir));
     }
 }

@@ -20,8 +20,8 @@ use crate::cells::{self, CellLeaf, Entry, Line, Window};
 use crate::expression::{Expression, Op, Word};
 use crate::level::Solids;
 use crate::nearest::Candidate;
-use crate::query::{Extent, Mode, Query};
-use crate::solid::{SolidModel, SolidRay};
+use crate::query::{Extent, Mode, PreparedRay, Query, View};
+use crate::solid::SolidModel;
 use crate::strategies::PAD;
 use crate::transition::Transition;
 
@@ -86,9 +86,8 @@ impl Members {
         }
         if query.probing {
             if !member.alone {
-                let ray = solids.near_ray(member.solid, query);
-                let ray = SolidRay { end: ray.start, ..ray };
-                let (line, window) = whole(solids, member.solid, &ray, query);
+                let mut moved = None;
+                let (line, window) = whole(solids, member.solid, &query.view, 0.0, &mut moved);
                 query.unclear |=
                     matches!(cells::entry(&member.leaf, &line, &window, &mut query.scratch), Entry::Unclear);
             }
@@ -101,15 +100,15 @@ impl Members {
         if query.gathering {
             return query.scratch.whole.met.push((member.solid, index));
         }
-        let ray = solids.near_ray(member.solid, query);
-        let (line, window) = whole(solids, member.solid, &ray, query);
+        let (end, mut moved) = (query.limit(), None);
+        let (line, window) = whole(solids, member.solid, &query.view, end, &mut moved);
         match cells::entry(&member.leaf, &line, &window, &mut query.scratch) {
             Entry::Missed => {}
             Entry::Unclear => query.unclear = true,
             Entry::At { t, face } => {
                 let leaf = member.leaf.leaf;
                 let transition = Transition { t, leaf, face, entering: true, flipped: false, shared: false };
-                let candidate = solids.candidate(member.solid, transition, &ray, &query.view);
+                let candidate = solids.candidate(member.solid, transition, window.start, &query.view);
                 if query.mode == Mode::Occluded {
                     query.tentative |= candidate.t > 0.0 && candidate.t < query.ray.t_max;
                 } else {
@@ -121,17 +120,16 @@ impl Members {
     }
 
     fn visit_alone(&self, solids: &Solids, member: &Member, query: &mut Query) {
-        let ray = solids.near_ray(member.solid, query);
-        let (line, window) = whole(solids, member.solid, &ray, query);
+        let (end, mut moved) = (query.limit(), None);
+        let (line, window) = whole(solids, member.solid, &query.view, end, &mut moved);
         let mut found: SmallVec<[Transition; 4]> = SmallVec::new();
         let all = query.mode == Mode::Collect;
         cells::leaf_transitions(&member.leaf, false, &line, &window, &mut query.scratch, |transition| {
             found.push(transition);
             all
         });
-        let view = query.view;
         for transition in found {
-            query.offer(solids.candidate(member.solid, transition, &ray, &view));
+            query.offer(solids.candidate(member.solid, transition, window.start, &query.view));
         }
     }
 
@@ -149,15 +147,14 @@ impl Members {
                 return;
             }
             let solid = group[0].0;
-            let ray = solids.near_ray(solid, query);
-            let (line, window) = whole(solids, solid, &ray, query);
+            let (view, end, mut moved) = (query.view, query.limit(), None);
+            let (line, window) = whole(solids, solid, &view, end, &mut moved);
             let leaves: SmallVec<[CellLeaf; 16]> =
                 group.iter().map(|&(_, index)| self.members[index as usize].leaf).collect();
-            let view = query.view;
             let mut found: SmallVec<[Candidate; 4]> = SmallVec::new();
             let all = query.mode == Mode::Collect;
             cells::union_transitions(&leaves, &line, &window, &mut query.scratch, |transition| {
-                found.push(solids.candidate(solid, transition, &ray, &view));
+                found.push(solids.candidate(solid, transition, window.start, &view));
                 all
             });
             found.into_iter().for_each(|candidate| {
@@ -167,11 +164,18 @@ impl Members {
     }
 }
 
-/// All of a solid along a ray.
-fn whole<'a>(solids: &'a Solids, solid: u32, ray: &SolidRay, query: &Query) -> (Line<'a>, Window) {
-    let tolerance = solids.tolerance(solid);
-    let window = Window { low: ray.start, high: ray.end, start: ray.start, tolerance };
-    (Line::new(&solids.models[solid as usize], solid, ray, &query.view), window)
+/// All of a solid along a ray from its start to `end`, a parameter of the scene's ray.
+#[inline(always)]
+fn whole<'a>(
+    solids: &'a Solids,
+    solid: u32,
+    view: &'a View,
+    end: f64,
+    moved: &'a mut Option<PreparedRay>,
+) -> (Line<'a>, Window) {
+    let (ray, start) = solids.near(solid, view, moved);
+    let window = Window { low: start, high: start + end * view.scale, start, tolerance: solids.tolerance(solid) };
+    (Line::new(&solids.models[solid as usize], solid, ray, view), window)
 }
 
 /// The leaves that the solid is the union of, ascending; `None` for other solids.

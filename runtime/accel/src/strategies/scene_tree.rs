@@ -31,13 +31,13 @@ impl SceneTree {
 
     /// Calls `visit` once for every box that may be met before the parameter `t_max` of the scene's ray.
     pub fn visit(&self, view: &View, t_max: f64, mailbox: &mut Mailbox, visit: impl FnMut(u32)) {
-        let shift = if view.origin.abs().max_element() <= self.reach {
+        let shift = if view.reach <= self.reach {
             0.0
         } else {
-            (self.tree.bounds().center() - view.origin).dot(view.dir)
+            (self.tree.bounds().center() - view.ray.origin).dot(view.ray.dir)
         };
         let range = (-shift, t_max * view.scale - shift);
-        self.tree.visit(view.origin + view.dir * shift, view.inverse_dir, range, mailbox, visit);
+        self.tree.visit(view.ray.origin + view.ray.dir * shift, view.ray.inverse_dir, range, mailbox, visit);
     }
 
     pub fn cells(&self) -> usize {

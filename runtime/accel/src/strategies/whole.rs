@@ -110,7 +110,7 @@ impl PerSolid {
                 let view = query.view;
                 query.tests += model.leaves.len() as u32;
                 oracle::transitions(model, &ray, |transition| {
-                    query.offer(solids.candidate(solid, transition, &ray, &view))
+                    query.offer(solids.candidate(solid, transition, ray.start, &view))
                 });
             }
             Structure::Tree(tree, operators) => evaluate(solids, solid, operators, &ray, query, |line, scratch| {
@@ -139,7 +139,7 @@ pub fn evaluate(
     let WholeScratch { gathered, values, .. } = &mut scratch;
     query.tests += gathered.tests;
     operators.transitions(model, gathered, values, |transition| {
-        query.offer(solids.candidate(solid, transition, ray, &view))
+        query.offer(solids.candidate(solid, transition, ray.start, &view))
     });
     query.scratch.whole = scratch;
 }
