@@ -67,6 +67,7 @@ pub trait SolidTracer: Send + Sync {
     fn visit(&self, solids: &Solids, primitive: u32, query: &mut Query);
 }
 
+#[allow(clippy::large_enum_variant, reason = "one to a frame, and every visit reads it")]
 pub enum Tracer {
     Local(Local),
     Native(Native),
