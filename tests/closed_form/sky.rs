@@ -13,8 +13,8 @@ use super::support::{Stage, estimate, lambert, render, spot_camera};
 const SUN: DVec3 = DVec3::new(0.3, 0.5, 0.6);
 
 fn sky(solar_disc: bool) -> Environment {
-    let settings = SkySettings { turbidity: 3.0, ground_albedo: 0.3, sun: SUN, solar_disc, scale: 1.0 };
-    Environment::hosek_wilkie(&settings)
+    let settings = SkySettings { ground_albedo: 0.3, sun: SUN, solar_disc, ..SkySettings::default() };
+    Environment::sky(&settings)
 }
 
 /// Irradiance on the floor from directions given by a map of the unit square with constant density, mean of 360 to 830 nm

@@ -98,6 +98,14 @@ pub enum Bsdf {
     },
     /// Parts and parameters that vary over the surface.
     Varying(Arc<Varying>),
+    /// A clear coat over an opaque base, with a film between the two that absorbs (per metre) over a thickness (metres). [`Bsdf::is_coat`] and
+    /// [`Bsdf::is_base`] say what may be which.
+    Layered {
+        coat: Arc<Bsdf>,
+        base: Arc<Bsdf>,
+        absorption: Spectrum,
+        thickness: f64,
+    },
 }
 
 /// Emission of a surface towards the side of its normal (solids: outwards).
@@ -156,6 +164,24 @@ impl Bsdf {
         let interface = matches!(self, Bsdf::Dielectric { .. } | Bsdf::RoughDielectric { .. } | Bsdf::Inert);
         let element = matches!(self, Bsdf::Polariser { .. } | Bsdf::Retarder { .. } | Bsdf::Depolariser { .. });
         interface || element || matches!(self, Bsdf::ThinDielectric { .. })
+    }
+
+    /// It can lie on top of a base.
+    pub fn is_coat(&self) -> bool {
+        matches!(self, Bsdf::Dielectric { .. } | Bsdf::RoughDielectric { .. })
+    }
+
+    /// It can lie under a coat.
+    pub fn is_base(&self) -> bool {
+        matches!(
+            self,
+            Bsdf::Lambert { .. }
+                | Bsdf::OrenNayar { .. }
+                | Bsdf::Mirror { .. }
+                | Bsdf::Phong { .. }
+                | Bsdf::Conductor { .. }
+                | Bsdf::RoughConductor { .. }
+        )
     }
 
     /// It is an interface between two indices of refraction.

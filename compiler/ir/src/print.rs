@@ -26,8 +26,8 @@ use arsc_spectral::Spectrum;
 use crate::shape_text::open_shape;
 use crate::write::{Call, Float, Floats};
 use crate::{
-    Action, Attributes, Bsdf, Camera, CutRule, Density, Emitter, Environment, Exposure, Facets, Filter, Ir, Leaf,
-    Light, Material, Medium, NodeId, NodeKind, PhaseFunction, Precedence, Projection, Surface,
+    Action, Attributes, Bsdf, Camera, CutRule, Density, Emitter, Exposure, Facets, Filter, Ir, Leaf, Material, Medium,
+    NodeId, NodeKind, PhaseFunction, Precedence, Projection, Surface,
 };
 
 impl Display for Ir {
@@ -152,6 +152,12 @@ impl Display for Text<'_, Bsdf> {
                 Call::new(f, "retarder")?.float("retardance", *retardance)?.float("angle", *angle)?.end()
             }
             Bsdf::Varying(varying) => write!(f, "{}", Text(&**varying)),
+            Bsdf::Layered { coat, base, absorption, thickness } => Call::new(f, "layered")?
+                .arg("coat", Text(&**coat))?
+                .arg("base", Text(&**base))?
+                .arg("absorption", Text(absorption))?
+                .float("thickness", *thickness)?
+                .end(),
             Bsdf::Depolariser { transmittance } => {
                 Call::new(f, "depolariser")?.arg("transmittance", Text(transmittance))?.end()
             }
@@ -281,38 +287,6 @@ fn open_surface<'a, 'b>(f: &'a mut Formatter<'b>, surface: &Surface) -> Result<C
         Surface::Disk { radius } => Call::new(f, "disk")?.float("radius", *radius),
         Surface::Plane => Call::new(f, "plane"),
         Surface::Mesh { path, .. } => Call::new(f, "mesh")?.arg("path", Quoted(path)),
-    }
-}
-
-impl Display for Text<'_, Light> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            Light::Point { intensity } => Call::new(f, "point_light")?.arg("intensity", Text(intensity))?.end(),
-            Light::Distant { irradiance, direction } => Call::new(f, "distant_light")?
-                .arg("irradiance", Text(irradiance))?
-                .point("direction", *direction)?
-                .end(),
-        }
-    }
-}
-
-impl Display for Text<'_, Environment> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            Environment::Constant { radiance } => {
-                Call::new(f, "constant_environment")?.arg("radiance", Text(radiance))?.end()
-            }
-            Environment::Medium { medium } => Call::new(f, "atmosphere")?.index("medium", "v", Some(*medium))?.end(),
-            Environment::HosekWilkie { turbidity, ground_albedo, sun, solar_disc, scale } => {
-                Call::new(f, "hosek_wilkie")?
-                    .float("turbidity", *turbidity)?
-                    .float("ground_albedo", *ground_albedo)?
-                    .point("sun", *sun)?
-                    .arg("solar_disc", solar_disc)?
-                    .float("scale", *scale)?
-                    .end()
-            }
-        }
     }
 }
 

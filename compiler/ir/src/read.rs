@@ -8,15 +8,16 @@ use std::sync::Arc;
 
 use arsc_diagnostics::{SourceId, Span};
 use arsc_geometry::{ClosedMesh, DVec3, Shape, TriangleMesh};
-use arsc_spectral::{Observer, Spectrum, WavelengthRange};
+use arsc_spectral::{Observer, Raster, Spectrum, WavelengthRange};
 
 use crate::args::{Args, float, float_list, floats, index, integer};
+use crate::light_text::{environment, light};
 use crate::shape_text::shape;
 use crate::term::{Cursor, Fault, Term, TermKind};
 use crate::{
-    Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Density, Distribution, Emitter, Environment, Exposure, Facets,
-    Filter, Ir, Leaf, Light, Material, MaterialId, Medium, Node, NodeId, NodeKind, PathTrace, PhaseFunction,
-    Precedence, Projection, Strategy, Surface,
+    Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Density, Distribution, Emitter, Exposure, Facets, Filter, Ir,
+    Leaf, Material, MaterialId, Medium, Node, NodeId, NodeKind, PathTrace, PhaseFunction, Precedence, Projection,
+    Strategy, Surface,
 };
 
 /// Why a text is no IR; one-based position, the column counted in characters.
@@ -35,23 +36,34 @@ impl fmt::Display for ReadError {
 
 impl std::error::Error for ReadError {}
 
-/// Where the content of a mesh comes from, by its path: the text form names it only.
-pub type Meshes<'a> = &'a dyn Fn(&str) -> Option<Arc<TriangleMesh>>;
+/// Where the content of files comes from, by path: the text form names them only.
+pub trait Contents {
+    fn mesh(&self, _path: &str) -> Option<Arc<TriangleMesh>> {
+        None
+    }
 
-/// Reads the text form of an IR without meshes.
+    fn image(&self, _path: &str) -> Option<Arc<Raster>> {
+        None
+    }
+}
+
+/// No files.
+impl Contents for () {}
+
+/// Reads the text form of an IR that names no files.
 ///
 /// # Errors
 /// The first place where the text does not have the form.
 pub fn read(text: &str) -> Result<Ir, ReadError> {
-    read_with(text, &|_| None)
+    read_with(text, &())
 }
 
 /// Reads the text form of an IR.
 ///
 /// # Errors
-/// The first place where the text does not have the form, or names a mesh that there is not.
-pub fn read_with(text: &str, meshes: Meshes<'_>) -> Result<Ir, ReadError> {
-    read_statements(text, meshes).map_err(|(offset, message)| {
+/// The first place where the text does not have the form, or names a file that there is not.
+pub fn read_with(text: &str, contents: &dyn Contents) -> Result<Ir, ReadError> {
+    read_statements(text, contents).map_err(|(offset, message)| {
         let before = &text[..offset];
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);
         let line = before.matches('\n').count() + 1;
@@ -59,7 +71,7 @@ pub fn read_with(text: &str, meshes: Meshes<'_>) -> Result<Ir, ReadError> {
     })
 }
 
-fn read_statements(text: &str, meshes: Meshes<'_>) -> Result<Ir, Fault> {
+fn read_statements(text: &str, contents: &dyn Contents) -> Result<Ir, Fault> {
     let mut cursor = Cursor::new(text);
     cursor.expect("ir")?;
     cursor.expect("1")?;
@@ -74,7 +86,7 @@ fn read_statements(text: &str, meshes: Meshes<'_>) -> Result<Ir, Fault> {
         actions: Vec::new(),
     };
     while cursor.skip_blank() {
-        statement(&mut cursor, &mut ir, meshes)?;
+        statement(&mut cursor, &mut ir, contents)?;
     }
     if ir.root.0 == u32::MAX {
         return cursor.fault("there is no `root`");
@@ -82,14 +94,14 @@ fn read_statements(text: &str, meshes: Meshes<'_>) -> Result<Ir, Fault> {
     Ok(ir)
 }
 
-fn statement(cursor: &mut Cursor, ir: &mut Ir, meshes: Meshes<'_>) -> Result<(), Fault> {
+fn statement(cursor: &mut Cursor, ir: &mut Ir, contents: &dyn Contents) -> Result<(), Fault> {
     if cursor.peek() == Some('%') {
         let start = cursor.offset;
         if cursor.node()? as usize != ir.nodes.len() {
             return Err((start, format!("expected the next node, `%{}`", ir.nodes.len())));
         }
         cursor.expect("=")?;
-        let kind = node_kind(Args::new(cursor.term()?)?, ir, meshes)?;
+        let kind = node_kind(Args::new(cursor.term()?)?, ir, contents)?;
         let origin = span(cursor)?;
         ir.nodes.push(Node { kind, origin });
         return Ok(());
@@ -220,6 +232,12 @@ pub(crate) fn bsdf(term: Term) -> Result<Bsdf, Fault> {
             Bsdf::Polariser { transmittance: spectrum(args.take("transmittance")?)?, angle: args.float("angle")? }
         }
         "retarder" => Bsdf::Retarder { retardance: args.float("retardance")?, angle: args.float("angle")? },
+        "layered" => Bsdf::Layered {
+            coat: Arc::new(bsdf(args.take("coat")?)?),
+            base: Arc::new(bsdf(args.take("base")?)?),
+            absorption: spectrum(args.take("absorption")?)?,
+            thickness: args.float("thickness")?,
+        },
         "depolariser" => Bsdf::Depolariser { transmittance: spectrum(args.take("transmittance")?)? },
         _ => return args.unknown("bsdf"),
     };
@@ -310,7 +328,7 @@ fn material(term: Term, ir: &Ir) -> Result<Material, Fault> {
     Ok(Material { bsdf, emitter, medium, inside, faces })
 }
 
-fn node_kind(mut args: Args, ir: &Ir, meshes: Meshes<'_>) -> Result<NodeKind, Fault> {
+fn node_kind(mut args: Args, ir: &Ir, contents: &dyn Contents) -> Result<NodeKind, Fault> {
     let kind = match args.name {
         "union" => NodeKind::Union(operands(&mut args, ir)?),
         "intersection" => NodeKind::Intersection(operands(&mut args, ir)?),
@@ -322,25 +340,15 @@ fn node_kind(mut args: Args, ir: &Ir, meshes: Meshes<'_>) -> Result<NodeKind, Fa
         }
         "with" => attributes(&mut args, ir, Precedence::Inner)?,
         "override" => attributes(&mut args, ir, Precedence::Outer)?,
-        "point_light" => NodeKind::Light(Box::new(Light::Point { intensity: spectrum(args.take("intensity")?)? })),
-        "distant_light" => NodeKind::Light(Box::new(Light::Distant {
-            irradiance: spectrum(args.take("irradiance")?)?,
-            direction: args.point("direction")?,
-        })),
-        "constant_environment" => {
-            NodeKind::Environment(Box::new(Environment::Constant { radiance: spectrum(args.take("radiance")?)? }))
+        _ => {
+            if let Some(light) = light(&mut args)? {
+                NodeKind::Light(Box::new(light))
+            } else if let Some(environment) = environment(&mut args, ir, contents)? {
+                NodeKind::Environment(Box::new(environment))
+            } else {
+                NodeKind::Leaf(Box::new(leaf(&mut args, ir, contents)?))
+            }
         }
-        "atmosphere" => NodeKind::Environment(Box::new(Environment::Medium {
-            medium: index(&args.take("medium")?, 'v', ir.media.len())?,
-        })),
-        "hosek_wilkie" => NodeKind::Environment(Box::new(Environment::HosekWilkie {
-            turbidity: args.float("turbidity")?,
-            ground_albedo: args.float("ground_albedo")?,
-            sun: args.point("sun")?,
-            solar_disc: args.boolean("solar_disc")?,
-            scale: args.float("scale")?,
-        })),
-        _ => NodeKind::Leaf(Box::new(leaf(&mut args, ir, meshes)?)),
     };
     args.end()?;
     Ok(kind)
@@ -368,21 +376,21 @@ fn attributes(args: &mut Args, ir: &Ir, precedence: Precedence) -> Result<NodeKi
     Ok(NodeKind::Attributes { attributes: Attributes { bsdf, emitter, medium, cut, face }, precedence, child })
 }
 
-fn leaf(args: &mut Args, ir: &Ir, meshes: Meshes<'_>) -> Result<Leaf, Fault> {
-    let solid = if args.name == "mesh_solid" { Some(mesh_solid(args, meshes)?) } else { shape(args)? };
+fn leaf(args: &mut Args, ir: &Ir, contents: &dyn Contents) -> Result<Leaf, Fault> {
+    let solid = if args.name == "mesh_solid" { Some(mesh_solid(args, contents)?) } else { shape(args)? };
     if let Some(shape) = solid {
         let parent_from_object = args.map()?;
         let material = args.index("material", 'm', ir.materials.len())?.map(MaterialId);
         return Ok(Leaf::Solid { shape, parent_from_object, material });
     }
-    let surface = surface(args, meshes)?;
+    let surface = surface(args, contents)?;
     let parent_from_object = args.map()?;
     let material = args.index("material", 'm', ir.materials.len())?.map(MaterialId);
     Ok(Leaf::Surface { surface, parent_from_object, material })
 }
 
-fn mesh_solid(args: &mut Args, meshes: Meshes<'_>) -> Result<Shape, Fault> {
-    let (path, mesh) = mesh(args, meshes)?;
+fn mesh_solid(args: &mut Args, contents: &dyn Contents) -> Result<Shape, Fault> {
+    let (path, mesh) = mesh(args, contents)?;
     match ClosedMesh::new(path, (*mesh).clone()) {
         Ok((mesh, _)) => Ok(Shape::Mesh(Arc::new(mesh))),
         Err(error) => Err((args.offset, error.to_string())),
@@ -390,13 +398,13 @@ fn mesh_solid(args: &mut Args, meshes: Meshes<'_>) -> Result<Shape, Fault> {
 }
 
 /// The path of a mesh, and its content.
-fn mesh(args: &mut Args, meshes: Meshes<'_>) -> Result<(Arc<str>, Arc<TriangleMesh>), Fault> {
+fn mesh(args: &mut Args, contents: &dyn Contents) -> Result<(Arc<str>, Arc<TriangleMesh>), Fault> {
     let path: Arc<str> = args.text("path")?.into();
-    let mesh = meshes(&path).ok_or_else(|| (args.offset, format!("there is no mesh `{path}`")))?;
+    let mesh = contents.mesh(&path).ok_or_else(|| (args.offset, format!("there is no mesh `{path}`")))?;
     Ok((path, mesh))
 }
 
-fn surface(args: &mut Args, meshes: Meshes<'_>) -> Result<Surface, Fault> {
+fn surface(args: &mut Args, contents: &dyn Contents) -> Result<Surface, Fault> {
     fn corners<const N: usize>(args: &mut Args) -> Result<[DVec3; N], Fault> {
         let mut corners = [DVec3::ZERO; N];
         for corner in &mut corners {
@@ -411,7 +419,7 @@ fn surface(args: &mut Args, meshes: Meshes<'_>) -> Result<Surface, Fault> {
         "disk" => Surface::Disk { radius: args.float("radius")? },
         "plane" => Surface::Plane,
         "mesh" => {
-            let (path, mesh) = mesh(args, meshes)?;
+            let (path, mesh) = mesh(args, contents)?;
             Surface::Mesh { path, mesh }
         }
         _ => return args.unknown("node"),

@@ -192,6 +192,12 @@ fn is_unit(v: DVec3) -> bool {
 fn check_light(light: &Light) -> Check {
     match light {
         Light::Point { intensity } => check_spectrum(intensity),
+        Light::Spot { intensity, exponent, angle } => {
+            require(*exponent >= 0.0 && exponent.is_finite(), "an exponent is negative or not finite")?;
+            require(*angle > 0.0 && *angle <= std::f64::consts::FRAC_PI_2, "the angle is not in (0, pi / 2]")?;
+            check_spectrum(intensity)
+        }
+        Light::Photometric { spectrum, .. } => check_spectrum(spectrum),
         Light::Distant { irradiance, direction } => {
             require(is_unit(*direction), "the direction is not a unit vector")?;
             check_spectrum(irradiance)
@@ -203,11 +209,17 @@ fn check_environment(ir: &Ir, environment: &Environment) -> Check {
     match environment {
         Environment::Constant { radiance } => check_spectrum(radiance),
         Environment::Medium { medium } => check_attributes(ir, None, None, Some(*medium)),
-        Environment::HosekWilkie { turbidity, ground_albedo, sun, scale, .. } => {
-            require(is_unit(*sun), "the sun's direction is not a unit vector")?;
-            require((1.0..=10.0).contains(turbidity), "the turbidity is not in 1..=10")?;
-            require((0.0..=1.0).contains(ground_albedo), "the albedo is not in 0..=1")?;
+        Environment::Image { scale, .. } => {
             require(*scale >= 0.0 && scale.is_finite(), "the scale is negative or not finite")
+        }
+        Environment::Sky(sky) => {
+            require(is_unit(sky.sun), "the sun's direction is not a unit vector")?;
+            require((1.0..=10.0).contains(&sky.turbidity), "the turbidity is not in 1..=10")?;
+            require((0.0..=1.0).contains(&sky.ground_albedo), "the albedo is not in 0..=1")?;
+            require(sky.scale >= 0.0 && sky.scale.is_finite(), "the scale is negative or not finite")?;
+            let star = sky.star_temperature.is_none_or(|kelvin| kelvin > 0.0 && kelvin.is_finite());
+            require(star, "the temperature of the star is not positive")?;
+            require(sky.star_intensity >= 0.0 && sky.star_intensity.is_finite(), "the star's intensity is negative")
         }
     }
 }
@@ -241,6 +253,12 @@ fn check_bsdf(bsdf: &Bsdf) -> Check {
             require(retardance.is_finite() && angle.is_finite(), "an angle is not finite")
         }
         Bsdf::Depolariser { transmittance } => check_spectrum(transmittance),
+        Bsdf::Layered { coat, base, absorption, thickness } => {
+            require(coat.is_coat(), "what lies on top is no coat")?;
+            require(base.is_base(), "what lies under a coat is no base")?;
+            require(*thickness >= 0.0 && thickness.is_finite(), "a thickness is negative or not finite")?;
+            check_bsdf(coat).and_then(|()| check_bsdf(base)).and_then(|()| check_spectrum(absorption))
+        }
     }
 }
 

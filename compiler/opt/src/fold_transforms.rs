@@ -191,6 +191,14 @@ impl Folding<'_, '_> {
                 self.log.fire("fold_into_light");
                 self.place(child, DAffine3::from_translation(map.translation), origin)
             }
+            light @ (Light::Spot { .. } | Light::Photometric { .. }) => {
+                let child = self.push(NodeKind::Light(Box::new(light)), origin);
+                if map == DAffine3::IDENTITY {
+                    return child;
+                }
+                self.log.fire("fold_into_light");
+                self.place(child, map, origin)
+            }
             Light::Distant { irradiance, direction } => {
                 let mapped = map.transform_vector3(direction);
                 // A direction that is unit already keeps its bits.

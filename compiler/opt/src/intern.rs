@@ -119,6 +119,12 @@ impl Structural for Bsdf {
             }
             Bsdf::Retarder { retardance, angle } => hash_all(&[*retardance, *angle], hasher),
             Bsdf::Depolariser { transmittance } => transmittance.structural_hash(hasher),
+            Bsdf::Layered { coat, base, absorption, thickness } => {
+                coat.structural_hash(hasher);
+                base.structural_hash(hasher);
+                absorption.structural_hash(hasher);
+                hash_f64(*thickness, hasher);
+            }
             Bsdf::Varying(varying) => {
                 varying.parts.iter().for_each(|part| part.bsdf.structural_hash(hasher));
                 hash_all(&varying.texture_from_object.to_cols_array(), hasher);

@@ -1,6 +1,6 @@
 //! Checks the normal form that the crate's documentation promises.
 
-use arsc_ir::{Environment, Ir, Leaf, Light, MaterialId, NodeId, NodeKind};
+use arsc_ir::{Environment, Ir, Leaf, MaterialId, NodeId, NodeKind};
 
 /// What a node is allowed to be a part of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +63,7 @@ fn role(ir: &Ir, id: NodeId, roles: &[Role]) -> Result<Role, &'static str> {
         }
         NodeKind::Transform { child, .. } => match (roles[child.index()], ir.kind(*child)) {
             (Role::Solid, _) => Ok(Role::Instance),
-            (Role::Light, NodeKind::Light(light)) if matches!(**light, Light::Point { .. }) => Ok(Role::Placed),
+            (Role::Light, NodeKind::Light(light)) if light.is_point() => Ok(Role::Placed),
             (Role::Environment, NodeKind::Environment(environment))
                 if !matches!(**environment, Environment::Constant { .. } | Environment::Medium { .. }) =>
             {

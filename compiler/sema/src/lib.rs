@@ -6,6 +6,7 @@
 mod actions;
 mod check;
 mod code;
+mod data_files;
 mod eval;
 mod meshes;
 mod reference;

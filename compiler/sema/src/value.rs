@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec2, DVec3};
 
 use arsc_ir::{
     Action, ActionAt, Attributes, Camera, Density, Distribution, Exposure, Filter, NodeId, Observer, PhaseFunction,
-    Spectrum, Strategy,
+    SkyModel, Spectrum, Strategy,
 };
 
 use crate::code::{Coercion, FnId};
@@ -48,8 +48,7 @@ pub enum Value {
     Observer(Observer),
     Strategy(Strategy),
     Distribution(Distribution),
-    /// A value of a type that has only one.
-    Only,
+    SkyModel(SkyModel),
 }
 
 /// A function value.
@@ -218,6 +217,13 @@ impl Value {
         match self {
             Value::Exposure(exposure) => *exposure,
             other => bug("an exposure", other),
+        }
+    }
+
+    pub fn as_sky_model(&self) -> SkyModel {
+        match self {
+            Value::SkyModel(model) => *model,
+            other => bug("a sky model", other),
         }
     }
 

@@ -23,7 +23,7 @@ fn emissions(expressions: &[&str]) -> Vec<Spectrum> {
     let spectrum = |node: &arsc_ir::Node| match &node.kind {
         NodeKind::Light(light) => match &**light {
             Light::Point { intensity } => Some(intensity.clone()),
-            Light::Distant { .. } => None,
+            _ => None,
         },
         _ => None,
     };

@@ -1,11 +1,13 @@
 //! Materials of the IR → the renderer's, indexed alike.
 
+use std::sync::Arc;
+
 use arsc_ir::{Environment, Ir, NodeKind};
 use arsc_render::bsdf::{MicrofacetShape, Microfacets};
 use arsc_render::{
     AreaEmitter, Bsdf, Density, Material, Media, Medium, Parameter, PhaseFunction, VaryingBsdf, VaryingPart,
 };
-use arsc_spectral::DenseSpectrum;
+use arsc_spectral::{DenseSpectrum, Spectrum};
 
 use crate::AssemblyError;
 use crate::geometry::{members, node};
@@ -63,6 +65,12 @@ fn lower_bsdf(bsdf: &arsc_ir::Bsdf) -> Bsdf {
         arsc_ir::Bsdf::Retarder { retardance, angle } => Bsdf::retarder(*retardance, *angle),
         arsc_ir::Bsdf::Depolariser { transmittance } => Bsdf::depolariser(transmittance),
         arsc_ir::Bsdf::Inert => Bsdf::Inert,
+        arsc_ir::Bsdf::Layered { coat, base, absorption, thickness } => {
+            let (coat, base) = (lower_bsdf(coat), lower_bsdf(base));
+            let depth = Spectrum::Scaled { factor: *thickness, spectrum: Arc::new(absorption.clone()) };
+            // The verifier has seen to it that these parts fit.
+            Bsdf::layered(&coat, &base, &depth).unwrap_or(base)
+        }
         // Where a single bsdf is asked for, the first part answers; parts do not vary themselves.
         arsc_ir::Bsdf::Varying(varying) => {
             varying.parts.first().map_or_else(Bsdf::default, |part| lower_bsdf(&part.bsdf))

@@ -17,7 +17,9 @@ pub enum ImageError {
     #[error("not a spectral image: {0}")]
     NotSpectral(String),
     /// No format that is read here.
-    #[error("not a picture of a kind that is read: spectral or RGB OpenEXR, PNG, TIFF, CSV of bands, ARTRAW")]
+    #[error(
+        "not a picture of a kind that is read: spectral or RGB OpenEXR, PNG, TIFF, Radiance HDR, CSV of bands, ARTRAW"
+    )]
     Unknown,
     /// Right in form, wrong in content.
     #[error("the picture cannot be used: {0}")]

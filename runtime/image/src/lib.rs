@@ -22,6 +22,7 @@ mod picture;
 mod png_read;
 mod png_write;
 mod profile;
+mod radiance_hdr;
 mod spectral;
 mod tiff_read;
 mod tiff_write;

@@ -85,8 +85,8 @@ fn outdoors() -> (World, Camera) {
     stage.solid(Shape::Sphere { radius: 1.0 }, DVec3::new(0.0, 0.0, 1.1), colour([0.3, 0.4, 0.7]));
     stage.solid(Shape::Sphere { radius: 0.5 }, DVec3::new(1.5, -0.5, 0.6), glass());
     let sun = DVec3::new(-1.0, -1.0, 1.5);
-    let settings = SkySettings { turbidity: 3.0, ground_albedo: 0.3, sun, solar_disc: true, scale: 1.0 };
-    let sky = Environment::hosek_wilkie(&settings);
+    let settings = SkySettings { ground_albedo: 0.3, sun, ..SkySettings::default() };
+    let sky = Environment::sky(&settings);
     (stage.world(vec![sky]), camera(DVec3::new(0.0, -6.0, 2.0), DVec3::new(0.0, 0.0, 0.8)))
 }
 

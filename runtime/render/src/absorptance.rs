@@ -19,6 +19,9 @@ const STEP_NM: f64 = (TABLE_MAX_NM - TABLE_MIN_NM) / (LAMBDAS - 1) as f64;
 /// Samples of the bsdf per entry, along each axis of the unit square.
 const GRID: usize = 16;
 
+/// Its multiples are evenly spread over the unit interval.
+const INVERSE_GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
+
 #[derive(Clone, Debug)]
 pub enum Absorptance {
     None,
@@ -36,6 +39,7 @@ impl Absorptance {
             | Bsdf::Mirror(_)
             | Bsdf::Phong(_)
             | Bsdf::RoughConductor(_)
+            | Bsdf::Layered(_)
             | Bsdf::Fluorescent(_) => Absorptance::Table(tabulate(bsdf)),
             _ => Absorptance::None,
         }
@@ -98,7 +102,9 @@ fn scattered(bsdf: &Bsdf, wo: DVec3, wavelengths: &SampledWavelengths) -> [Sampl
         let frame = ReferenceFrame::new(s_axis(DVec3::Z, wo), wo);
         for i in 0..GRID * GRID {
             let u = [i % GRID, i / GRID].map(|k| (k as f64 + 0.5) / GRID as f64);
-            let Some(sample) = bsdf.sample::<Polarised>(wo, u, 0.5, wavelengths) else { continue };
+            // The choice of a lobe, if there is one, is stratified as well.
+            let u_lobe = ((i as f64 + 0.5) * INVERSE_GOLDEN_RATIO).fract();
+            let Some(sample) = bsdf.sample::<Polarised>(wo, u, u_lobe, wavelengths) else { continue };
             let light = sample.weight.apply(&StokesSpectrum::unpolarised(SampledSpectrum::ONE)).in_frame(frame);
             sum = [sum[0] + light.s[0].0, sum[1] + light.s[1].0];
         }

@@ -5,6 +5,7 @@
 
 mod area_lights;
 mod bsdfs;
+mod layered;
 mod lights;
 mod mueller;
 mod phases;

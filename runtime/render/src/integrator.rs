@@ -17,7 +17,7 @@ use glam::DVec3;
 
 use crate::bsdf::Bsdf;
 use crate::frame::Frame;
-use crate::light::Light;
+use crate::light::Origin;
 use crate::polarisation::{Mueller, Polarisation, Stokes};
 use crate::sampler::Sampler;
 use crate::world::{LightSource, World};
@@ -210,12 +210,10 @@ impl<'a> Event<'a> {
                 (self.hit.spawn_to_sample(&sample)?, radiance, Some(pdf))
             }
             LightSource::Light(index) => {
-                let (ray, irradiance) = match world.light(index) {
-                    Light::Point(point) => {
-                        let distance2 = (point.position - self.hit.p).length_squared();
-                        (self.hit.spawn_to(point.position)?, point.irradiance(distance2, wavelengths))
-                    }
-                    Light::Distant(distant) => (self.hit.spawn(distant.wi), distant.irradiance(wavelengths)),
+                let (origin, irradiance) = world.light(index).incident(self.hit.p, wavelengths);
+                let ray = match origin {
+                    Origin::Point(position) => self.hit.spawn_to(position)?,
+                    Origin::Direction(wi) => self.hit.spawn(wi),
                 };
                 (ray, P::Stokes::unpolarised(irradiance), None)
             }

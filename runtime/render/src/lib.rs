@@ -35,7 +35,7 @@ pub use film::{Bands, Film, FilmMismatch, Tile};
 pub use filter::{FilterSample, FilterShape, ReconstructionFilter};
 pub use frame::Frame;
 pub use integrator::incident_radiance;
-pub use light::{Environment, EnvironmentSample, Light, SkySettings};
+pub use light::{Environment, EnvironmentSample, Light, SkyModel, SkySettings};
 pub use medium::{Density, Medium};
 pub use path_trace::{PathTraceSettings, Progress, path_trace};
 pub use phase::PhaseFunction;

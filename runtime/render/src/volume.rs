@@ -20,7 +20,7 @@ use crate::bsdf::Bsdf;
 use crate::frame::Frame;
 use crate::integrator::{CAMERA_PAIRS, ROULETTE_DEPTH, ROULETTE_MAX};
 use crate::interiors::FillingId;
-use crate::light::Light;
+use crate::light::Origin;
 use crate::medium::Medium;
 use crate::phase::PhaseFunction;
 use crate::polarisation::{Mueller, Polarisation, Stokes};
@@ -507,12 +507,10 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
                 (vertex.segment_to(&sample)?, radiance, Some(pdf))
             }
             LightSource::Light(index) => {
-                let (ray, irradiance) = match self.world.light(index) {
-                    Light::Point(point) => {
-                        let distance2 = (point.position - vertex.p()).length_squared();
-                        (vertex.segment_to_point(point.position)?, point.irradiance(distance2, wavelengths))
-                    }
-                    Light::Distant(distant) => (vertex.spawn(distant.wi), distant.irradiance(wavelengths)),
+                let (origin, irradiance) = self.world.light(index).incident(vertex.p(), wavelengths);
+                let ray = match origin {
+                    Origin::Point(position) => vertex.segment_to_point(position)?,
+                    Origin::Direction(wi) => vertex.spawn(wi),
                 };
                 (ray, P::Stokes::unpolarised(irradiance), None)
             }

@@ -23,6 +23,15 @@ pub fn daylight_chromaticity(kelvin: f64) -> [f64; 2] {
     [x, (-3.0 * x + 2.870) * x - 0.275]
 }
 
+/// The components S0, S1, S2.
+pub(crate) fn components() -> [Spectrum; 3] {
+    let lambda_nm: Arc<[f64]> = COMPONENTS.iter().map(|row| row[0]).collect();
+    std::array::from_fn(|i| Spectrum::Tabulated {
+        lambda_nm: lambda_nm.clone(),
+        values: COMPONENTS.iter().map(|row| row[i + 1]).collect(),
+    })
+}
+
 /// Relative spectrum, scaled to the luminance of the constant spectrum 1. It ends within 5 nm of 300 and 830 nm.
 pub fn daylight(kelvin: f64) -> Spectrum {
     let [x, y] = daylight_chromaticity(kelvin);

@@ -7,6 +7,7 @@
 
 pub mod adaptation;
 pub mod colour;
+mod colour_basis;
 pub mod colour_space;
 mod daylight;
 mod dense;
@@ -14,31 +15,42 @@ pub mod dispersion;
 mod eval;
 pub mod illuminant;
 mod observer;
+mod photometric_web;
 pub mod pictures;
 mod planck;
+mod preetham;
 mod range;
+mod raster;
 mod reradiation;
 mod reradiation_table;
 mod sampled;
 pub mod sky;
 mod sky_lanes;
+mod sky_polarisation;
 mod spectrum;
 pub mod srgb;
+mod star;
 pub mod tone;
 mod uplift;
 mod wavelengths;
 
+pub use colour_basis::ColourBasis;
 pub use daylight::{DAYLIGHT_KELVIN, daylight, daylight_chromaticity, normalised};
 pub use dense::DenseSpectrum;
 pub use observer::{
     LUMINOUS_EFFICACY, Observer, Y_INTEGRAL_NM, chromaticity, d65, xyz_of_radiance, xyz_of_reflectance,
 };
+pub use photometric_web::{PhotometricWeb, WebError};
 pub use planck::planck;
+pub use preetham::PreethamSky;
 pub use range::{KNOTS, TABLE_MAX_NM, TABLE_MIN_NM, WavelengthRange};
+pub use raster::{Channels, Raster};
 pub use reradiation::{DonaldsonMatrix, Dye, Fluorescence, Reradiation};
 pub use reradiation_table::ReradiationTable;
 pub use sampled::SampledSpectrum;
 pub use sky_lanes::SkyLanes;
+pub use sky_polarisation::SkyPolarisation;
 pub use spectrum::Spectrum;
+pub use star::Star;
 pub use uplift::{uplift_rgb, uplift_xyz};
 pub use wavelengths::{SampledWavelengths, WavelengthDistribution};

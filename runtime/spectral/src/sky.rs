@@ -23,6 +23,10 @@ pub const OZONE_EDGE_NM: f64 = 295.0;
 /// Angular radius of the solar disc, radians: the mean apparent diameter of 1919 arc seconds. (The authors' own code
 /// draws a disc of 0.51 degrees, which leaves some 8 % of the direct irradiance out.)
 pub const SOLAR_RADIUS: f64 = 0.5 * 1919.0 / 3600.0 * std::f64::consts::PI / 180.0;
+
+/// Temperature of the black body that stands for the sun where another star takes its place: the sun's effective one.
+pub const SUN_KELVIN: f64 = 5778.0;
+
 /// The range of the model's turbidity; values outside are clamped.
 pub const TURBIDITY: [f64; 2] = [1.0, 10.0];
 

@@ -30,6 +30,7 @@ codes! {
     error CONFLICTING_ATTRIBUTES "E0212" conflicting_attributes: "two attributes of one kind are attached at once";
     error MESH "E0213" mesh: "a mesh file is not what its format demands";
     error OPEN_MESH "E0214" open_mesh: "a mesh that is to be a solid does not close";
+    error MALFORMED_FILE "E0215" malformed_file: "a data file is not what its format demands";
     error STACK "E0301" stack: "an action does not find what it needs on the stack";
     error NOT_IMPLEMENTED "E0901" not_implemented: "the capability is specified but not implemented yet";
     lint UNUSED_NAME "W0101" unused_name: "a name is defined but never used";

@@ -1,8 +1,9 @@
 //! What is written reads back, and what has no form is refused where it has none.
 
 use super::*;
-use crate::{Builder, verify};
+use crate::{Builder, Environment, Light, Sky, SkyModel, verify};
 use arsc_geometry::DAffine3;
+use arsc_spectral::{Channels, PhotometricWeb};
 use proptest::prelude::*;
 
 fn number() -> impl Strategy2<Value = f64> {
@@ -155,6 +156,12 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
         b.bsdf(Bsdf::Polariser { transmittance: tables.0.clone(), angle: tables.2 });
         b.bsdf(Bsdf::Retarder { retardance: tables.2, angle: -0.5 });
         b.bsdf(Bsdf::Depolariser { transmittance: tables.0.clone() });
+        b.bsdf(Bsdf::Layered {
+            coat: Arc::new(Bsdf::RoughDielectric { ior: tables.1.clone(), facets }),
+            base: Arc::new(Bsdf::Lambert { reflectance: tables.0.clone() }),
+            absorption: tables.1.clone(),
+            thickness: tables.2,
+        });
         b.emitter(Emitter { radiance: tables.1, two_sided: numbers[0] % 2 == 0, thermal: numbers[1] % 2 == 0 });
         for (i, recipe) in recipes.into_iter().enumerate() {
             let origin = Span { source: SourceId(i as u32), start: numbers[1] / 2, end: u32::MAX };
@@ -171,6 +178,14 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
                     let precedence = if inner { Precedence::Inner } else { Precedence::Outer };
                     NodeKind::Attributes { attributes, precedence, child: id(of) }
                 }
+                Recipe::Light(intensity, false) if numbers[0] % 3 == 0 => {
+                    NodeKind::Light(Box::new(Light::Spot { intensity, exponent: tables.2, angle: 0.7 }))
+                }
+                Recipe::Light(spectrum, false) if numbers[0] % 3 == 1 => {
+                    let web = PhotometricWeb::new(vec![0.0, 90.0], vec![0.0, 360.0], vec![1.0, 0.5, 1.0, 0.5]);
+                    let web = web.expect("a valid table").into();
+                    NodeKind::Light(Box::new(Light::Photometric { web, spectrum }))
+                }
                 Recipe::Light(intensity, false) => NodeKind::Light(Box::new(Light::Point { intensity })),
                 Recipe::Light(irradiance, true) => {
                     NodeKind::Light(Box::new(Light::Distant { irradiance, direction: DVec3::Z }))
@@ -179,13 +194,22 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
                 Recipe::Sky(_, true) if numbers[0] % 3 == 0 => {
                     NodeKind::Environment(Box::new(Environment::Medium { medium: 2 }))
                 }
-                Recipe::Sky(_, true) => NodeKind::Environment(Box::new(Environment::HosekWilkie {
+                Recipe::Sky(_, true) if numbers[0] % 3 == 1 => NodeKind::Environment(Box::new(Environment::Image {
+                    path: "a\u{e9}.hdr".into(),
+                    image: pixel(),
+                    scale: tables.2,
+                })),
+                Recipe::Sky(_, true) => NodeKind::Environment(Box::new(Environment::Sky(Sky {
+                    model: SkyModel::ALL[numbers[1] as usize % 2],
                     turbidity: tables.2,
                     ground_albedo: 0.1,
                     sun: DVec3::new(-0.0, 0.6, 0.8),
                     solar_disc: numbers[2] % 2 == 0,
                     scale: 1.0,
-                })),
+                    star_temperature: (numbers[2] % 3 == 0).then_some(9600.0),
+                    star_intensity: 1.5,
+                    polarised: numbers[2] % 2 == 1,
+                }))),
                 Recipe::Leaf(leaf) => NodeKind::Leaf(Box::new(leaf)),
                 _ => NodeKind::Union(Vec::new()),
             };
@@ -219,13 +243,30 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
     })
 }
 
+fn pixel() -> Arc<Raster> {
+    Arc::new(Raster::new(1, 1, Channels::Rgb, vec![1.0; 3]).expect("a pixel"))
+}
+
+/// A file of each kind under every name.
+struct Files;
+
+impl Contents for Files {
+    fn mesh(&self, _path: &str) -> Option<Arc<TriangleMesh>> {
+        Some(tetrahedron())
+    }
+
+    fn image(&self, _path: &str) -> Option<Arc<Raster>> {
+        Some(pixel())
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn what_is_printed_reads_back_and_prints_the_same(ir in any_ir()) {
         let text = ir.to_string();
-        let back = read_with(&text, &|_| Some(tetrahedron())).map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
+        let back = read_with(&text, &Files).map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
         prop_assert_eq!(&back, &ir);
         prop_assert_eq!(back.to_string(), text);
     }
@@ -238,7 +279,7 @@ proptest! {
         let mut end = prefix.min(text.len());
         while !text.is_char_boundary(end) { end -= 1; }
         let damaged = format!("{}{garbage}{}", &text[..end], &text[end..]);
-        if let Ok(ir) = read_with(&damaged, &|_| Some(tetrahedron())) {
+        if let Ok(ir) = read_with(&damaged, &Files) {
             let _ = verify(&ir);
         }
     }

@@ -2,7 +2,7 @@
 
 use arsc_diagnostics::{Diagnostic, Span, codes::geometry as codes};
 use arsc_geometry::{Aabb, DVec3};
-use arsc_ir::{Leaf, Light, NodeId, NodeKind};
+use arsc_ir::{Leaf, NodeId, NodeKind};
 
 use super::survey::{Membership, Survey};
 use super::{Places, is_rendered};
@@ -119,7 +119,7 @@ fn hidden_lights(opaque: &mut Opaque, findings: &mut Vec<Diagnostic>) {
 /// Where a point light of the root group is.
 fn point_light(survey: &Survey, member: NodeId) -> Option<DVec3> {
     let is_point = |id: NodeId| match survey.ir.kind(id) {
-        NodeKind::Light(light) => matches!(**light, Light::Point { .. }),
+        NodeKind::Light(light) => light.is_point(),
         _ => false,
     };
     match survey.ir.kind(member) {

@@ -22,6 +22,7 @@ use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Code as DiagnosticCode, Diagnostic, SourceId, Span};
 use arsc_geometry::DAffine3;
 use arsc_ir::{Bsdf, Emitter, Leaf, Medium, Node, NodeId, NodeKind, Shape, Surface};
+use arsc_spectral::Raster;
 use arsc_texture::ExpressionGraph;
 
 use crate::code::{GlobalId, Program, Site};
@@ -84,6 +85,7 @@ pub struct Machine<'a> {
     in_std: bool,
     collected: Vec<Value>,
     tables: FxHashMap<(SourceId, String), Arc<Table>>,
+    pub(crate) pictures: FxHashMap<(SourceId, String), (Arc<str>, Arc<Raster>)>,
     /// By path.
     pub(crate) closed_meshes: FxHashMap<Arc<str>, ClosedOutcome>,
     /// What varies over surfaces.
@@ -115,6 +117,7 @@ impl<'a> Machine<'a> {
             in_std: false,
             collected: Vec::new(),
             tables: FxHashMap::default(),
+            pictures: FxHashMap::default(),
             closed_meshes: FxHashMap::default(),
             expressions: ExpressionGraph::default(),
             nodes: Vec::new(),

@@ -245,10 +245,6 @@ pub(super) fn varying_reflectance() -> Type {
 fn not_yet() -> Vec<Builtin> {
     let of = |name, doc| Builtin::new(name, doc).module(MATERIAL);
     vec![
-        of("layered", "A clear coat over a base.")
-            .param(Param::new("coat", Type::Bsdf, "on top"))
-            .param(Param::new("base", Type::Bsdf, "below"))
-            .later(Type::Bsdf, "the layered surface"),
         of("phosphor", "A fluorescent surface.")
             .param(Param::new("reflectance", Spectrum(Reflectance), "without re-radiation"))
             .later(Type::Bsdf, "fluorescence"),

@@ -256,13 +256,17 @@ pub fn choices(ty: &Type) -> &'static [(&'static str, Value)] {
         (Distribution::Beckmann.name(), Value::Distribution(Distribution::Beckmann)),
         (Distribution::Blinn.name(), Value::Distribution(Distribution::Blinn)),
     ];
-    use arsc_ir::{Distribution, Exposure, Observer, Strategy};
+    const SKY_MODELS: [(&str, Value); SkyModel::ALL.len()] = [
+        (SkyModel::HosekWilkie.name(), Value::SkyModel(SkyModel::HosekWilkie)),
+        (SkyModel::Preetham.name(), Value::SkyModel(SkyModel::Preetham)),
+    ];
+    use arsc_ir::{Distribution, Exposure, Observer, SkyModel, Strategy};
     match ty {
         Type::Exposure => &[("auto", Value::Exposure(Exposure::Auto))],
         Type::Observer => &OBSERVERS,
         Type::Strategy => &STRATEGIES,
         Type::Distribution => &DISTRIBUTIONS,
-        Type::SkyModel => &[("hosek_wilkie", Value::Only)],
+        Type::SkyModel => &SKY_MODELS,
         _ => &[],
     }
 }

@@ -1,5 +1,9 @@
 //! Bsdfs of microfacets and lobes, panes and flat optical elements.
 
+use std::sync::Arc;
+
+use arsc_diagnostics::Diagnostic;
+use arsc_diagnostics::codes::sema as codes;
 use arsc_ir::{Bsdf, Distribution, Expression, Facets, Parameter};
 use arsc_texture::{Binary, Unary};
 
@@ -8,15 +12,49 @@ use super::mixtures::with_parameters;
 use super::{Builtin, Param};
 use crate::code::Site;
 use crate::eval::{Eval, Machine, is_varying};
-use crate::types::SpectrumKind::{Extinction, Reflectance, RefractiveIndex};
+use crate::types::SpectrumKind::{Coefficient, Extinction, Reflectance, RefractiveIndex};
 use crate::types::TextureKind;
-use crate::types::Type::{self, Angle, Spectrum, Texture};
+use crate::types::Type::{self, Angle, Float, Spectrum, Texture};
 use crate::value::Value;
 
 pub fn builtins() -> Vec<Builtin> {
     let mut list = rough();
     list.extend(sheets());
+    list.push(layered());
     list
+}
+
+fn layered() -> Builtin {
+    let absorption = Param::new("absorption", Spectrum(Coefficient), "of the film between the two, per metre");
+    of("layered", "A clear coat over an opaque base, with an absorbing film between the two.")
+        .param(Param::new("coat", Type::Bsdf, "`dielectric` or `rough_dielectric`"))
+        .param(Param::new(
+            "base",
+            Type::Bsdf,
+            "`lambert`, `oren_nayar`, `phong`, `mirror`, `conductor` or `rough_conductor`",
+        ))
+        .param(absorption.default_value("0", Value::spectrum(arsc_ir::Spectrum::Constant(0.0))))
+        .param(Param::new("thickness", Float, "of the film, metres").float(0.0).non_negative())
+        .runs(Type::Bsdf, |m, args, site| {
+            m.require_non_negative(&args[2], "an absorption coefficient", site, 2)?;
+            let part = |m: &Machine<'_>, i: usize| {
+                args[i].as_attributes().bsdf.and_then(|id| m.bsdfs.get(id as usize).cloned())
+            };
+            let Some(coat) = part(m, 0).filter(Bsdf::is_coat) else {
+                let help = "use `dielectric(…)` or `rough_dielectric(…)`";
+                return Err(unsuited(site, 0, "this bsdf cannot be a coat").help(help).into());
+            };
+            let Some(base) = part(m, 1).filter(Bsdf::is_base) else {
+                let help = "use a plain opaque bsdf, such as `lambert(…)` or `conductor(…)`";
+                return Err(unsuited(site, 1, "this bsdf cannot lie under a coat").help(help).into());
+            };
+            let (absorption, thickness) = (args[2].as_spectrum().as_ref().clone(), args[3].as_float());
+            bsdf(m, Bsdf::Layered { coat: Arc::new(coat), base: Arc::new(base), absorption, thickness })
+        })
+}
+
+fn unsuited(site: &Site, arg: usize, message: &str) -> Diagnostic {
+    *site.fail_arg(arg, codes::OUT_OF_RANGE, message, "not of a kind that can be layered here")
 }
 
 fn of(name: &'static str, doc: &'static str) -> Builtin {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use arsc_diagnostics::{Diagnostic, SourceFile, SourceId, SourceMap};
 use arsc_geometry::TriangleMesh;
-use arsc_sema::{Analysed, AssetError, Assets, MeshFile, Module, Options, Setting, analyse};
+use arsc_sema::{Analysed, AssetError, Assets, DataFile, MeshFile, Module, Options, Setting, analyse};
 use arsc_syntax::ast::{ImportPath, ItemKind};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
@@ -34,6 +34,13 @@ impl Assets for Files {
             _ => return Err(AssetError::NotFound),
         }
         Ok(MeshFile { path: path.into(), mesh: Arc::new(mesh) })
+    }
+
+    fn bytes(&self, _from: SourceId, path: &str) -> Result<DataFile, AssetError> {
+        match path {
+            "broken.hdr" => Ok(DataFile { path: path.into(), bytes: b"#?RADIANCE\n\n-Y 2 +X 2\n".as_slice().into() }),
+            _ => Err(AssetError::NotFound),
+        }
     }
 }
 

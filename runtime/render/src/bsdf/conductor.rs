@@ -19,6 +19,12 @@ impl Conductor {
         Conductor { eta, k }
     }
 
+    /// The same metal behind a transparent medium of this index.
+    pub(super) fn within(&self, index: f64) -> Conductor {
+        let [eta, k] = super::relative_to(index, &self.eta, &self.k);
+        Conductor { eta, k }
+    }
+
     /// What a reflection at an angle of this cosine does.
     #[inline]
     pub fn reflection(&self, cos: f64, wavelengths: &SampledWavelengths) -> DiattenuatingRetarder {

@@ -18,6 +18,10 @@ impl Lambert {
         Lambert { reflectance: DenseSpectrum::new(reflectance).clamped(0.0, 1.0) }
     }
 
+    pub(super) fn reflectance(&self) -> &DenseSpectrum {
+        &self.reflectance
+    }
+
     #[inline]
     pub(super) fn eval(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> SampledSpectrum {
         if wo.z * wi.z <= 0.0 {

@@ -85,6 +85,11 @@ impl Microfacets {
         self.alpha[0] != self.alpha[1]
     }
 
+    /// Mean alpha.
+    pub fn width(&self) -> f64 {
+        (self.alpha[0] * self.alpha[1]).sqrt()
+    }
+
     /// Density of the normal `h`.
     #[inline]
     pub fn density(&self, h: DVec3) -> f64 {

@@ -1,7 +1,7 @@
 //! Ideal mirror: the same reflectance at every angle, on both sides. Polarised light is turned over, as by a perfect
 //! conductor.
 
-use arsc_spectral::{DenseSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 
 use super::BsdfSample;
@@ -15,6 +15,11 @@ pub struct Mirror {
 impl Mirror {
     pub(super) fn new(reflectance: &Spectrum) -> Mirror {
         Mirror { reflectance: DenseSpectrum::new(reflectance).clamped(0.0, 1.0) }
+    }
+
+    #[inline]
+    pub(super) fn reflectance(&self, wavelengths: &SampledWavelengths) -> SampledSpectrum {
+        self.reflectance.sample(wavelengths)
     }
 
     #[inline]

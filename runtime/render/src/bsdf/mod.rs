@@ -15,6 +15,7 @@ mod conductor;
 mod dielectric;
 mod fluorescent;
 mod lambert;
+mod layered;
 mod microfacets;
 mod mirror;
 mod oren_nayar;
@@ -34,6 +35,7 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use fluorescent::{Fluorescent, FluorescentEvent};
 pub use lambert::Lambert;
+pub use layered::Layered;
 pub use microfacets::{MicrofacetShape, Microfacets};
 pub use mirror::Mirror;
 pub use oren_nayar::OrenNayar;
@@ -59,6 +61,7 @@ pub enum Bsdf {
     Sheet(Sheet),
     /// Diffuse; as a bsdf what keeps its wavelength, see [`Bsdf::fluorescent`] for the rest.
     Fluorescent(Box<Fluorescent>),
+    Layered(Box<Layered>),
     /// No interface: light goes straight on.
     Inert,
 }
@@ -126,6 +129,12 @@ impl Bsdf {
         Bsdf::RoughDielectric(RoughDielectric::new(ior, facets))
     }
 
+    /// A coat over a base, with an absorbing film between: `upper` a smooth or rough dielectric, `lower` Lambert, Oren–Nayar, Phong, mirror or
+    /// metal; `depth` is the film's absorption coefficient times its thickness. `None` for other parts.
+    pub fn layered(upper: &Bsdf, lower: &Bsdf, depth: &Spectrum) -> Option<Bsdf> {
+        Layered::new(upper, lower, depth).map(|layered| Bsdf::Layered(Box::new(layered)))
+    }
+
     /// A sheet that lets the field along its axis through, `transmittance` of its power. The axis stands at `angle`, radians,
     /// from the direction of growing u, towards that of the normal crossed with it.
     pub fn polariser(transmittance: &Spectrum, angle: f64) -> Bsdf {
@@ -166,6 +175,7 @@ impl Bsdf {
             | Bsdf::RoughConductor(_)
             | Bsdf::RoughDielectric(_)
             | Bsdf::Fluorescent(_) => false,
+            Bsdf::Layered(layered) => layered.is_specular(),
             Bsdf::Mirror(_)
             | Bsdf::Dielectric(_)
             | Bsdf::Conductor(_)
@@ -182,6 +192,7 @@ impl Bsdf {
             Bsdf::RoughConductor(rough) => rough.facets.is_anisotropic(),
             Bsdf::RoughDielectric(rough) => rough.facets.is_anisotropic(),
             Bsdf::Sheet(sheet) => sheet.has_axis(),
+            Bsdf::Layered(layered) => layered.needs_tangent(),
             _ => false,
         }
     }
@@ -223,6 +234,7 @@ impl Bsdf {
         let depolarised = match self {
             Bsdf::Fluorescent(both) => return both.elastic().eval::<P>(wo, wi, wavelengths),
             Bsdf::RoughConductor(rough) => return rough.eval::<P>(wo, wi, wavelengths),
+            Bsdf::Layered(layered) => return layered.eval::<P>(wo, wi, wavelengths),
             Bsdf::RoughDielectric(rough) => return rough.eval::<P>(wo, wi, rough.ior(relative, wavelengths)),
             Bsdf::Lambert(lambert) => lambert.eval(wo, wi, wavelengths),
             Bsdf::OrenNayar(oren_nayar) => oren_nayar.eval(wo, wi, wavelengths),
@@ -246,6 +258,7 @@ impl Bsdf {
             Bsdf::Lambert(_) | Bsdf::OrenNayar(_) | Bsdf::Fluorescent(_) => same(cosine_pdf(wo, wi)),
             Bsdf::Phong(phong) => same(phong.pdf(wo, wi)),
             Bsdf::RoughConductor(rough) => same(rough.pdf(wo, wi)),
+            Bsdf::Layered(layered) => same(layered.pdf(wo, wi)),
             Bsdf::RoughDielectric(rough) => rough.pdf(wo, wi, rough.ior(relative, wavelengths)),
             _ => SampledSpectrum::ZERO,
         }
@@ -276,6 +289,7 @@ impl Bsdf {
             Bsdf::RoughDielectric(rough) => rough.sample(wo, u, u_lobe, rough.ior(relative, wavelengths)),
             Bsdf::Sheet(sheet) => sheet.sample(wo, wavelengths),
             Bsdf::Fluorescent(both) => both.elastic().sample(wo, u, u_lobe, wavelengths),
+            Bsdf::Layered(layered) => layered.sample(wo, u, u_lobe, wavelengths),
             Bsdf::Inert => Some(BsdfSample::straight_on(wo)),
         }
     }
@@ -320,6 +334,11 @@ fn limited_index(ior: DenseSpectrum) -> DenseSpectrum {
 /// Real and imaginary part of the index of a metal; the real part is large enough to keep Fresnel's equations away from 0/0.
 fn index_of_metal(eta: &Spectrum, k: &Spectrum) -> [DenseSpectrum; 2] {
     [DenseSpectrum::new(eta).clamped(1e-3, 1e3), DenseSpectrum::new(k).clamped(0.0, 1e3)]
+}
+
+/// The same index over that of a transparent medium.
+fn relative_to(index: f64, eta: &DenseSpectrum, k: &DenseSpectrum) -> [DenseSpectrum; 2] {
+    [eta, k].map(|part| DenseSpectrum::from_fn(|lambda_nm| f64::from(part.at(lambda_nm)) / index))
 }
 
 /// Density of cosine sampling on the side of `wo`.

@@ -40,6 +40,11 @@ impl Phong {
         if exponent.is_nan() { 0.0 } else { exponent.clamp(0.0, MAX_EXPONENT) }
     }
 
+    /// Of facets that make about as wide a lobe.
+    pub(super) fn width(&self) -> f64 {
+        (2.0 / (self.exponent + 2.0)).sqrt()
+    }
+
     #[inline]
     pub(super) fn eval(&self, wo: DVec3, wi: DVec3, wavelengths: &SampledWavelengths) -> SampledSpectrum {
         let value = (self.exponent + 2.0) / TAU * lobe(wo, wi, self.exponent);

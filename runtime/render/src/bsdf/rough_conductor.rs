@@ -29,6 +29,12 @@ impl RoughConductor {
         RoughConductor { eta, k, facets }
     }
 
+    /// The same metal behind a transparent medium of this index.
+    pub(super) fn within(&self, index: f64) -> RoughConductor {
+        let [eta, k] = super::relative_to(index, &self.eta, &self.k);
+        RoughConductor { eta, k, facets: self.facets.clone() }
+    }
+
     /// The facet's normal on the side of `wo`; `None` where nothing is reflected.
     #[inline]
     fn half(wo: DVec3, wi: DVec3) -> Option<DVec3> {
