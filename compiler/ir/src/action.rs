@@ -1,7 +1,9 @@
 //! Actions: what is done with the scene. Stack effects were checked by the compiler.
 
-use arsc_spectral::tone::Exposure;
+use arsc_spectral::tone::ToneMap;
 use arsc_spectral::{Observer, WavelengthRange};
+
+use crate::ImageAction;
 
 /// How CSG is traced; all give the same picture (docs/csg.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -90,8 +92,11 @@ pub enum Action {
     PathTrace(PathTrace),
     /// `image<spectral> → image<display>`
     ToneMap {
-        exposure: Exposure,
+        tone: ToneMap,
+        /// One wavelength in grey instead of the colours.
+        slice_nm: Option<f64>,
     },
+    Image(ImageAction),
     /// `image<spectral> → image<spectral>`
     WriteExr {
         path: String,
@@ -99,9 +104,32 @@ pub enum Action {
     /// `image<display> → image<display>`
     WritePng {
         path: String,
+        sixteen_bit: bool,
+    },
+    /// `image<display> → image<display>`
+    WriteTiff {
+        path: String,
+        sixteen_bit: bool,
+    },
+    /// `image<spectral> → image<spectral>`: the bands as text.
+    WriteCsv {
+        path: String,
     },
     Dup,
     Swap,
     Drop,
     Over,
+}
+
+impl Action {
+    /// The file that it writes, below the output folder.
+    pub fn output(&self) -> Option<&String> {
+        match self {
+            Action::WriteExr { path }
+            | Action::WritePng { path, .. }
+            | Action::WriteTiff { path, .. }
+            | Action::WriteCsv { path } => Some(path),
+            _ => None,
+        }
+    }
 }

@@ -12,6 +12,7 @@ mod args;
 mod builder;
 mod camera;
 mod graph;
+mod image_action;
 mod light;
 mod light_text;
 mod material;
@@ -29,6 +30,7 @@ mod write;
 pub use action::{Action, PathTrace, Strategy};
 pub use builder::Builder;
 pub use camera::{Camera, Filter, Projection};
+pub use image_action::ImageAction;
 pub use light::{Environment, Light, Sky, SkyModel};
 pub use material::{Attributes, Bsdf, CutRule, Distribution, Emitter, Facets, Material, MaterialId};
 pub use medium::{Density, Medium, PhaseFunction};
@@ -38,7 +40,7 @@ pub use varying::{Parameter, Part, SpectrumTerm, SpectrumTexture, Varying};
 pub use verify::{Violation, verify};
 
 pub use arsc_geometry::{Aabb, Shape};
-pub use arsc_spectral::tone::Exposure;
+pub use arsc_spectral::tone::{Exposure, ToneMap};
 pub use arsc_spectral::{Observer, Spectrum, WavelengthRange};
 pub use arsc_texture::Expression;
 

@@ -23,11 +23,12 @@ use arsc_diagnostics::Span;
 use arsc_geometry::DVec3;
 use arsc_spectral::Spectrum;
 
+use crate::image_action::print_tone_map;
 use crate::shape_text::open_shape;
 use crate::write::{Call, Float, Floats};
 use crate::{
-    Action, Attributes, Bsdf, Camera, CutRule, Density, Emitter, Exposure, Facets, Filter, Ir, Leaf, Material, Medium,
-    NodeId, NodeKind, PhaseFunction, Precedence, Projection, Surface,
+    Action, Attributes, Bsdf, Camera, CutRule, Density, Emitter, Facets, Filter, Ir, Leaf, Material, Medium, NodeId,
+    NodeKind, PhaseFunction, Precedence, Projection, Surface,
 };
 
 impl Display for Ir {
@@ -320,6 +321,12 @@ impl Display for Text<'_, Filter> {
     }
 }
 
+/// A file of a display picture; 8 bit go without saying.
+fn written(f: &mut Formatter<'_>, name: &str, path: &str, sixteen_bit: bool) -> fmt::Result {
+    let call = Call::new(f, name)?.arg("path", Quoted(path))?;
+    if sixteen_bit { call.arg("sixteen_bit", true)?.end() } else { call.end() }
+}
+
 impl Display for Text<'_, Action> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.0 {
@@ -335,24 +342,16 @@ impl Display for Text<'_, Action> {
                 .arg("observer", trace.observer.name())?
                 .arg("polarised", trace.polarised)?
                 .end(),
-            Action::ToneMap { exposure } => Call::new(f, "tone_map")?.arg("exposure", Text(exposure))?.end(),
+            Action::ToneMap { tone, slice_nm } => print_tone_map(f, tone, *slice_nm),
+            Action::Image(action) => Text(action).fmt(f),
             Action::WriteExr { path } => Call::new(f, "write_exr")?.arg("path", Quoted(path))?.end(),
-            Action::WritePng { path } => Call::new(f, "write_png")?.arg("path", Quoted(path))?.end(),
+            Action::WritePng { path, sixteen_bit } => written(f, "write_png", path, *sixteen_bit),
+            Action::WriteTiff { path, sixteen_bit } => written(f, "write_tiff", path, *sixteen_bit),
+            Action::WriteCsv { path } => Call::new(f, "write_csv")?.arg("path", Quoted(path))?.end(),
             Action::Dup => f.write_str("dup()"),
             Action::Swap => f.write_str("swap()"),
             Action::Drop => f.write_str("drop()"),
             Action::Over => f.write_str("over()"),
-        }
-    }
-}
-
-impl Display for Text<'_, Exposure> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match *self.0 {
-            Exposure::Auto => f.write_str("auto"),
-            Exposure::Ev(ev) => write!(f, "{}", Float(ev)),
-            Exposure::Key(key) => Call::new(f, "key")?.value(Float(key))?.end(),
-            Exposure::Percentile(percent) => Call::new(f, "percentile")?.value(Float(percent))?.end(),
         }
     }
 }

@@ -11,13 +11,14 @@ use arsc_geometry::{ClosedMesh, DVec3, Shape, TriangleMesh};
 use arsc_spectral::{Observer, Raster, Spectrum, WavelengthRange};
 
 use crate::args::{Args, float, float_list, floats, index, integer};
+use crate::image_action::{image_action, tone_map};
 use crate::light_text::{environment, light};
 use crate::shape_text::shape;
 use crate::term::{Cursor, Fault, Term, TermKind};
 use crate::{
-    Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Density, Distribution, Emitter, Exposure, Facets, Filter, Ir,
-    Leaf, Material, MaterialId, Medium, Node, NodeId, NodeKind, PathTrace, PhaseFunction, Precedence, Projection,
-    Strategy, Surface,
+    Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Density, Distribution, Emitter, Facets, Filter, Ir, Leaf,
+    Material, MaterialId, Medium, Node, NodeId, NodeKind, PathTrace, PhaseFunction, Precedence, Projection, Strategy,
+    Surface,
 };
 
 /// Why a text is no IR; one-based position, the column counted in characters.
@@ -473,35 +474,28 @@ fn action(term: Term) -> Result<Action, Fault> {
             polarised: args.boolean("polarised")?,
         }),
         "tone_map" => {
-            let exposure = exposure(args.take("exposure")?)?;
-            Action::ToneMap { exposure }
+            let (tone, slice_nm) = tone_map(&mut args)?;
+            Action::ToneMap { tone, slice_nm }
         }
         "write_exr" => Action::WriteExr { path: args.text("path")? },
-        "write_png" => Action::WritePng { path: args.text("path")? },
+        "write_png" => Action::WritePng { path: args.text("path")?, sixteen_bit: sixteen_bit(&mut args)? },
+        "write_tiff" => Action::WriteTiff { path: args.text("path")?, sixteen_bit: sixteen_bit(&mut args)? },
+        "write_csv" => Action::WriteCsv { path: args.text("path")? },
         "dup" => Action::Dup,
         "swap" => Action::Swap,
         "drop" => Action::Drop,
         "over" => Action::Over,
-        _ => return args.unknown("action"),
+        _ => match image_action(&mut args)? {
+            Some(action) => Action::Image(action),
+            None => return args.unknown("action"),
+        },
     };
     args.end()?;
     Ok(action)
 }
 
-fn exposure(term: Term) -> Result<Exposure, Fault> {
-    match term.kind {
-        TermKind::Word("auto") => return Ok(Exposure::Auto),
-        TermKind::Number(_) | TermKind::Word(_) => return float(&term).map(Exposure::Ev),
-        _ => {}
-    }
-    let mut args = Args::new(term)?;
-    let exposure = match args.name {
-        "key" => Exposure::Key(float(&args.next()?)?),
-        "percentile" => Exposure::Percentile(float(&args.next()?)?),
-        _ => return args.unknown("exposure"),
-    };
-    args.end()?;
-    Ok(exposure)
+fn sixteen_bit(args: &mut Args) -> Result<bool, Fault> {
+    if args.rest.is_empty() { Ok(false) } else { args.boolean("sixteen_bit") }
 }
 
 fn strategy(term: &Term) -> Result<Strategy, Fault> {

@@ -8,6 +8,7 @@ use std::fmt;
 use arsc_geometry::{DVec3, invert};
 use arsc_spectral::Spectrum;
 
+use crate::image_action::is_valid_tone_map;
 use crate::{
     Action, Attributes, Bsdf, Camera, CutRule, Density, Environment, Facets, Ir, Leaf, Light, Material, MaterialId,
     Medium, NodeId, NodeKind, Parameter, PhaseFunction, Projection, Surface, Varying,
@@ -65,6 +66,12 @@ pub fn verify(ir: &Ir) -> Result<(), Vec<Violation>> {
             let bands = require(positive(trace.band_nm), "the width of the bands is not positive and finite");
             found.check(bands, || format!("action {i}"));
         }
+        let picture = match &at.action {
+            Action::ToneMap { tone, slice_nm } => is_valid_tone_map(tone, *slice_nm),
+            Action::Image(action) => action.is_valid(),
+            _ => true,
+        };
+        found.check(require(picture, "a number is outside of what is allowed"), || format!("action {i}"));
     }
     if let Some(camera) = &ir.camera {
         found.check(check_camera(camera), || "camera".to_owned());

@@ -7,7 +7,7 @@ use std::fmt;
 
 use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Diagnostic, Span};
-use arsc_ir::{Action, ActionAt};
+use arsc_ir::{Action, ActionAt, ImageAction};
 
 /// What a stack cell holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +36,9 @@ fn name(action: &Action) -> &'static str {
         Action::ToneMap { .. } => "tone_map",
         Action::WriteExr { .. } => "write_exr",
         Action::WritePng { .. } => "write_png",
+        Action::WriteTiff { .. } => "write_tiff",
+        Action::WriteCsv { .. } => "write_csv",
+        Action::Image(action) => action.name(),
         Action::Dup => "dup",
         Action::Swap => "swap",
         Action::Drop => "drop",
@@ -50,9 +53,7 @@ pub fn check(actions: &[ActionAt], span: Span, lints: &mut Vec<Diagnostic>) -> R
         apply(&mut stack, at)?;
     }
     no_picture_twice(actions)?;
-    if !actions.is_empty()
-        && !actions.iter().any(|at| matches!(at.action, Action::WriteExr { .. } | Action::WritePng { .. }))
-    {
+    if !actions.is_empty() && !actions.iter().any(|at| at.action.output().is_some()) {
         let lint =
             Diagnostic::new(codes::NO_OUTPUT, "the action sequence writes no file").label(span, "no output here");
         lints.push(lint.help("add `write_exr(\"name.exr\")` after `path_trace`"));
@@ -64,7 +65,7 @@ pub fn check(actions: &[ActionAt], span: Span, lints: &mut Vec<Diagnostic>) -> R
 fn no_picture_twice(actions: &[ActionAt]) -> Result<(), Box<Diagnostic>> {
     let mut seen = BTreeMap::new();
     for at in actions {
-        if let Action::WriteExr { path } | Action::WritePng { path } = &at.action
+        if let Some(path) = at.action.output()
             && let Some(first) = seen.insert(path, at.origin)
         {
             let message = format!("the picture `{path}` is written twice");
@@ -88,8 +89,22 @@ fn apply(stack: &mut Vec<Cell>, at: &ActionAt) -> Result<(), Box<Diagnostic>> {
             stack.pop();
             stack.push(Cell::DisplayImage);
         }
-        Action::WriteExr { .. } => top(stack, at, Cell::SpectralImage)?,
-        Action::WritePng { .. } => top(stack, at, Cell::DisplayImage)?,
+        Action::WriteExr { .. } | Action::WriteCsv { .. } => top(stack, at, Cell::SpectralImage)?,
+        Action::WritePng { .. } | Action::WriteTiff { .. } => top(stack, at, Cell::DisplayImage)?,
+        Action::Image(ref action) => {
+            top(stack, at, Cell::SpectralImage)?;
+            match action {
+                ImageAction::DifferenceTo { .. } | ImageAction::VisualisePolarisation(_) => {
+                    stack.pop();
+                    stack.push(Cell::DisplayImage);
+                }
+                ImageAction::Add | ImageAction::Merge => match stack[..] {
+                    [.., Cell::SpectralImage, Cell::SpectralImage] => drop(stack.pop()),
+                    _ => return Err(too_few_images(stack, at)),
+                },
+                _ => {}
+            }
+        }
         Action::Dup | Action::Drop => {
             let [.., last] = stack[..] else { return Err(too_few(stack, at, 1)) };
             if at.action == Action::Dup {
@@ -149,4 +164,11 @@ fn help(stack: &[Cell], wanted: Cell) -> Option<&'static str> {
 fn too_few(stack: &[Cell], at: &ActionAt, wanted: usize) -> Box<Diagnostic> {
     let message = format!("`{}` needs {wanted} on the stack, but it holds {}", name(&at.action), stack.len());
     Box::new(Diagnostic::new(codes::STACK, message).label(at.origin, "this action"))
+}
+
+fn too_few_images(stack: &[Cell], at: &ActionAt) -> Box<Diagnostic> {
+    let below = stack.len().checked_sub(2).map_or("nothing".to_owned(), |i| stack[i].to_string());
+    let message = format!("`{}` needs two spectral images, but below the topmost lies {below}", name(&at.action));
+    let failure = Diagnostic::new(codes::STACK, message).label(at.origin, "this action");
+    Box::new(failure.help("`over()`, then `path_trace()` make a second one"))
 }

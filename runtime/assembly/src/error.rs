@@ -10,6 +10,12 @@ pub enum AssemblyError {
     NotNormal(&'static str),
     #[error("cannot write {name}")]
     Write { name: String, source: HostError },
+    #[error("cannot read {name}")]
+    Read { name: String, source: HostError },
+    #[error("`{action}` cannot use the picture")]
+    Imaging { action: &'static str, source: arsc_imaging::ImagingError },
+    #[error("cannot denoise the picture")]
+    Denoise(#[from] arsc_denoise::DenoiseError),
     #[error("cannot make the picture")]
     Image(#[from] arsc_image::ImageError),
     #[error("cannot build the scene for tracing")]

@@ -11,6 +11,11 @@ pub trait Host {
     /// place, or `None` if the picture is not wanted.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<Option<PathBuf>, HostError>;
 
+    /// The bytes of a picture that the script names, which lies below its folder.
+    fn read(&self, name: &str) -> Result<Vec<u8>, HostError> {
+        Err(format!("{name} cannot be read here").into())
+    }
+
     /// A line for people: what an action prints.
     fn say(&self, line: &str);
 

@@ -12,6 +12,7 @@ mod lights;
 mod materials;
 mod measure;
 mod measure_rays;
+mod pictures;
 mod sequence;
 mod settings;
 mod stage;

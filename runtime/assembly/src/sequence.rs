@@ -8,13 +8,12 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use arsc_image::{Depth, DisplayImage, Picture, SpectralImage};
-use arsc_ir::{Action, Ir, PathTrace};
+use arsc_image::{Depth, DisplayImage, SpectralImage};
+use arsc_ir::{Action, ImageAction, Ir, PathTrace, ToneMap};
 use arsc_render::{Bands, PathTraceSettings, path_trace};
-use arsc_spectral::tone::ToneMap;
 
 use crate::stage::{Stage, accel_strategy};
-use crate::{AssemblyError, Host, Settings, measure_rays};
+use crate::{AssemblyError, Host, Settings, measure_rays, pictures};
 
 /// What a run of the sequence gave.
 #[derive(Clone, Debug, Default)]
@@ -46,7 +45,7 @@ pub struct RenderReport {
 
 /// What lies on the stack.
 #[derive(Clone)]
-enum Item {
+pub(crate) enum Item {
     Scene(arsc_accel::Strategy),
     Spectral(Arc<SpectralImage>),
     Display(Arc<DisplayImage>),
@@ -68,8 +67,8 @@ pub fn default_actions(scene_name: &str) -> Vec<Action> {
     vec![
         Action::PathTrace(PathTrace::default()),
         Action::WriteExr { path: format!("{scene_name}.exr") },
-        Action::ToneMap { exposure: arsc_ir::Exposure::Auto },
-        Action::WritePng { path: format!("{scene_name}.png") },
+        Action::ToneMap { tone: ToneMap::default(), slice_nm: None },
+        Action::WritePng { path: format!("{scene_name}.png"), sixteen_bit: false },
     ]
 }
 
@@ -127,15 +126,23 @@ impl Machine<'_> {
                 let bytes = arsc_image::encode_exr(&*self.spectral("write_exr")?)?;
                 self.write(path, &bytes)?;
             }
-            Action::ToneMap { exposure } => {
-                let picture = Picture::Spectral(self.spectral("tone_map")?.as_ref().clone());
-                let image = arsc_imaging::tone_map(&picture, &ToneMap { exposure: *exposure, ..ToneMap::default() });
+            Action::ToneMap { tone, slice_nm } => {
+                let image = pictures::tone_map(&*self.spectral("tone_map")?, tone, *slice_nm)?;
                 self.stack.pop();
                 self.stack.push(Item::Display(Arc::new(image)));
             }
-            Action::WritePng { path } => {
-                let bytes = arsc_image::encode_png(&*self.display("write_png")?, Depth::Eight)?;
+            Action::Image(action) => self.image_action(action)?,
+            Action::WritePng { path, sixteen_bit } => {
+                let bytes = arsc_image::encode_png(&*self.display("write_png")?, depth(*sixteen_bit))?;
                 self.write(path, &bytes)?;
+            }
+            Action::WriteTiff { path, sixteen_bit } => {
+                let bytes = arsc_image::encode_tiff(&*self.display("write_tiff")?, depth(*sixteen_bit))?;
+                self.write(path, &bytes)?;
+            }
+            Action::WriteCsv { path } => {
+                let text = arsc_image::encode_csv(&*self.spectral("write_csv")?)?;
+                self.write(path, text.as_bytes())?;
             }
             Action::Dup => self.shuffle("dup", 1, |items| vec![items[0].clone(), items[0].clone()])?,
             Action::Drop => self.shuffle("drop", 1, |_| vec![])?,
@@ -145,6 +152,23 @@ impl Machine<'_> {
             }
         }
         Ok(true)
+    }
+
+    /// Replaces the topmost picture, or two, by what the action makes of them.
+    fn image_action(&mut self, action: &ImageAction) -> Result<(), AssemblyError> {
+        let top = self.spectral(action.name())?;
+        self.stack.pop();
+        let below = match (action, self.stack.last()) {
+            (ImageAction::Add | ImageAction::Merge, Some(Item::Spectral(_))) => self.stack.pop(),
+            (ImageAction::Add | ImageAction::Merge, other) => {
+                return Err(mismatch(action.name(), "two spectral images", other));
+            }
+            _ => None,
+        };
+        let below = if let Some(Item::Spectral(image)) = below { Some(image) } else { None };
+        let made = pictures::apply(action, top, below, self.host, self.settings.denoiser.as_deref())?;
+        self.stack.push(made);
+        Ok(())
     }
 
     /// Renders as the script asks, but for what the run asks otherwise.
@@ -263,4 +287,8 @@ impl Machine<'_> {
 
 fn mismatch(action: &'static str, needs: &'static str, found: Option<&Item>) -> AssemblyError {
     AssemblyError::Stack { action, needs, found: Item::name(found) }
+}
+
+fn depth(sixteen_bit: bool) -> Depth {
+    if sixteen_bit { Depth::Sixteen } else { Depth::Eight }
 }

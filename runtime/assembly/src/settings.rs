@@ -1,5 +1,7 @@
 //! What a run is asked for besides what the script says.
 
+use std::path::PathBuf;
+
 use arsc_accel::{Budget, Strategy};
 use arsc_render::{Bands, Film};
 
@@ -24,6 +26,8 @@ pub struct Settings {
     pub threads: Option<usize>,
     /// Names the pictures of scripts without actions.
     pub scene_name: String,
+    /// The library of Open Image Denoise; `None` for the one that the system finds.
+    pub denoiser: Option<PathBuf>,
     /// Goes into every picture, before what the render adds itself.
     pub metadata: Vec<(String, String)>,
     /// Write timings into pictures; without, equal runs give equal files.

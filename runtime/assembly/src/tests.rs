@@ -8,7 +8,7 @@ use arsc_diagnostics::{SourceId, Span};
 use arsc_geometry::{ClosedMesh, DAffine3, DVec3, TriangleMesh};
 use arsc_ir::{
     Action, ActionAt, Attributes, Bsdf, Builder, Emitter, Environment, Exposure, Ir, NodeId, NodeKind, PathTrace,
-    Precedence, Shape, Spectrum, Surface,
+    Precedence, Shape, Spectrum, Surface, ToneMap,
 };
 
 use crate::{AssemblyError, Host, HostError, Outcome, Settings, run};
@@ -142,8 +142,9 @@ fn a_crop_gives_the_pixels_of_the_whole_picture() {
 fn stack_words_do_what_they_say() {
     let trace = Action::PathTrace(PathTrace { samples: 1, max_depth: 3, seed: 9, ..PathTrace::default() });
     let exr = |name: &str| Action::WriteExr { path: name.into() };
-    let tone_map = Action::ToneMap { exposure: Exposure::Ev(0.0) };
-    let png = |name: &str| Action::WritePng { path: name.into() };
+    let tone_map =
+        Action::ToneMap { tone: ToneMap { exposure: Exposure::Ev(0.0), ..ToneMap::default() }, slice_nm: None };
+    let png = |name: &str| Action::WritePng { path: name.into(), sixteen_bit: false };
     let actions = vec![
         trace.clone(),
         Action::Dup,

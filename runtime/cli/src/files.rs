@@ -140,9 +140,9 @@ pub enum Output {
 }
 
 impl Output {
-    /// A path that ends in `.exr` or `.png` and is no folder is a file.
+    /// A path that ends like a picture and is no folder is a file.
     pub fn new(path: &Path) -> Output {
-        let is_picture = extension(path).is_some_and(|e| e == "exr" || e == "png");
+        let is_picture = extension(path).is_some_and(|e| ["exr", "png", "tif", "tiff", "csv"].contains(&&*e));
         if is_picture && !path.is_dir() { Output::File(path.to_owned()) } else { Output::Folder(path.to_owned()) }
     }
 

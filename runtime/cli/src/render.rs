@@ -9,7 +9,7 @@ use crate::args::{self, SceneArgs};
 use crate::compile::{Scene, compile};
 use crate::exit::Exit;
 use crate::failure::failure;
-use crate::files::Output;
+use crate::files::{Output, ScriptFolder};
 use crate::host::Machine;
 use crate::{bug, interrupt, statistics};
 
@@ -116,7 +116,7 @@ pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Folder for the pictures, or one picture: a path that ends in .exr or .png
+    /// Folder for the pictures, or one picture: a path that ends in .exr, .png, .tif or .csv
     #[arg(short, long, value_name = "DIR|FILE", default_value = ".")]
     output: PathBuf,
 
@@ -147,7 +147,8 @@ pub fn run(args: &Args) -> Exit {
     }
     interrupt::install();
     bug::stage("render");
-    let machine = Machine::new(Some(&output), args.quiet);
+    let machine =
+        Machine::new(Some(&output), args.quiet).reading(ScriptFolder::of(&args.scene.scene, &args.scene.allow_read));
     let settings = settings(args, &scene);
     bug::seed(settings.seed.unwrap_or_else(|| script_seed(&scene.ir)));
     match arsc_assembly::run(&scene.ir, &settings, &machine) {
@@ -167,7 +168,8 @@ fn settings(args: &Args, scene: &Scene) -> Settings {
     }
     let timings = !args.reproducible;
     let statistics = args.stats.is_some();
-    Settings { scene_name: scene.name.clone(), metadata, timings, statistics, ..args.settings.to_settings() }
+    let denoiser = crate::denoise::library();
+    Settings { scene_name: scene.name.clone(), metadata, timings, statistics, denoiser, ..args.settings.to_settings() }
 }
 
 fn script_seed(ir: &Ir) -> u64 {
@@ -180,14 +182,11 @@ fn check_output(output: &Output, scene: &Scene) -> Result<(), Exit> {
     if let Output::Folder(folder) = output
         && let Some(kind) = foreign_picture(folder)
     {
-        eprintln!("error: pictures are written as .exr or .png, not as .{kind}");
+        eprintln!("error: pictures are written as .exr, .png, .tif or .csv, not as .{kind}");
         return Err(Exit::CouldNotRun);
     }
     let actions = arsc_assembly::actions(&scene.ir, &scene.name);
-    let names = actions.iter().filter_map(|action| match action {
-        Action::WriteExr { path } | Action::WritePng { path } => Some(path),
-        _ => None,
-    });
+    let names = actions.iter().filter_map(Action::output);
     let mut places = Vec::new();
     for name in names {
         if let Some(place) = output.place(name).map_err(|error| failure(&error))? {
@@ -208,7 +207,7 @@ fn check_output(output: &Output, scene: &Scene) -> Result<(), Exit> {
 /// The extension of a path that means a picture of a kind that is not written, unless it is a folder.
 fn foreign_picture(path: &Path) -> Option<String> {
     let kind = path.extension()?.to_str()?.to_ascii_lowercase();
-    let is_known = ["jpg", "jpeg", "tif", "tiff", "hdr", "pfm", "bmp", "gif", "webp", "ppm", "tga"].contains(&&*kind);
+    let is_known = ["jpg", "jpeg", "hdr", "pfm", "bmp", "gif", "webp", "ppm", "tga"].contains(&&*kind);
     (is_known && !path.is_dir()).then_some(kind)
 }
 

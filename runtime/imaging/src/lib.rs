@@ -23,4 +23,4 @@ mod tone_map;
 
 pub use error::ImagingError;
 pub use summary::{Summary, summary};
-pub use tone_map::{is_display, luminances, tone_map};
+pub use tone_map::{is_display, luminances, tone_map, tone_map_colours};

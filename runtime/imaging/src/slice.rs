@@ -15,16 +15,21 @@ pub fn radiance_at(image: &SpectralImage, lambda_nm: f64) -> Result<Vec<f32>, Im
 /// The picture at a wavelength in the grey of D65: the radiance 1 is as bright as display white.
 pub fn slice(picture: &Picture, lambda_nm: f64) -> Result<Picture, ImagingError> {
     let Picture::Spectral(image) = picture else { return Err(ImagingError::NoSpectrum) };
+    slice_of(image, lambda_nm).map(Picture::Colour)
+}
+
+/// The same of a spectral image.
+pub fn slice_of(image: &SpectralImage, lambda_nm: f64) -> Result<ColourImage, ImagingError> {
     let white = (xyz_of_chromaticity(D65_WHITE) * UNIT_LUMINANCE).as_vec3();
     let mut metadata = image.metadata.clone();
     metadata.push(("slice".into(), format!("{lambda_nm}nm")));
-    Ok(Picture::Colour(ColourImage {
+    Ok(ColourImage {
         width: image.width,
         height: image.height,
         xyz: radiance_at(image, lambda_nm)?.into_iter().map(|value| (white * value).to_array()).collect(),
         channels: Vec::new(),
         metadata,
-    }))
+    })
 }
 
 /// The bands on either side of a wavelength and how far it lies from the first.

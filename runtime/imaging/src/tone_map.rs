@@ -19,19 +19,22 @@ pub fn is_display(picture: &Picture) -> bool {
 /// Gives the display image and adds the exposure that was used, in EV, to its metadata. Pixels that are not finite
 /// come out black.
 pub fn tone_map(picture: &Picture, wanted: &ToneMap) -> DisplayImage {
-    let mut image = shown(picture, &Display::new(wanted, &luminances(picture.xyz())));
-    image.space = wanted.space;
-    image
+    tone_map_colours([picture.width(), picture.height()], picture.xyz(), picture.metadata(), wanted)
 }
 
-/// A picture as a display shows it.
-pub(crate) fn shown(picture: &Picture, display: &Display) -> DisplayImage {
-    let rgb = picture.xyz().iter().map(|&xyz| coded(display, xyz)).collect();
-    let mut metadata = picture.metadata().to_vec();
+/// The same of colours with Y in cd m^-2.
+pub fn tone_map_colours(
+    [width, height]: [usize; 2],
+    xyz: &[[f32; 3]],
+    metadata: &[(String, String)],
+    wanted: &ToneMap,
+) -> DisplayImage {
+    let display = Display::new(wanted, &luminances(xyz));
+    let rgb = xyz.iter().map(|&xyz| coded(&display, xyz)).collect();
+    let mut metadata = metadata.to_vec();
     metadata.retain(|(name, _)| name != "exposure_ev");
     metadata.push(("exposure_ev".into(), format!("{:.3}", display.ev())));
-    let space = arsc_spectral::colour_space::ColourSpace::Srgb;
-    DisplayImage { width: picture.width(), height: picture.height(), space, rgb, metadata }
+    DisplayImage { width, height, space: wanted.space, rgb, metadata }
 }
 
 /// Coded components of an absolute colour.

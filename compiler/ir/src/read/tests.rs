@@ -6,6 +6,10 @@ use arsc_geometry::DAffine3;
 use arsc_spectral::{Channels, PhotometricWeb};
 use proptest::prelude::*;
 
+fn tone(ev: f64) -> crate::ToneMap {
+    crate::ToneMap { exposure: crate::Exposure::Ev(ev), ..crate::ToneMap::default() }
+}
+
 fn number() -> impl Strategy2<Value = f64> {
     prop_oneof![-10.0..10.0f64, Just(-0.0), Just(1e-300), Just(0.1), -1e300..1e300f64]
 }
@@ -237,8 +241,8 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
             polarised: true,
         };
         b.action(Action::PathTrace(trace), at);
-        b.action(Action::ToneMap { exposure: Exposure::Ev(tables.2) }, at);
-        b.action(Action::WritePng { path: "a \"quoted\\\" \u{1} path.png".to_owned() }, at);
+        b.action(Action::ToneMap { tone: tone(tables.2), slice_nm: None }, at);
+        b.action(Action::WritePng { path: "a \"quoted\\\" \u{1} path.png".to_owned(), sixteen_bit: true }, at);
         b.finish(last)
     })
 }

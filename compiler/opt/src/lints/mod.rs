@@ -53,8 +53,7 @@ fn is_rendered(ir: &Ir) -> bool {
         return ir.camera.is_some();
     }
     let any = |wanted: fn(&Action) -> bool| ir.actions.iter().any(|at| wanted(&at.action));
-    any(|action| matches!(action, Action::PathTrace(_)))
-        && any(|action| matches!(action, Action::WriteExr { .. } | Action::WritePng { .. }))
+    any(|action| matches!(action, Action::PathTrace(_))) && any(|action| action.output().is_some())
 }
 
 /// Counts by place in the script: how many nodes it made, and how many of them were found.

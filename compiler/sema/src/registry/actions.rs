@@ -1,20 +1,19 @@
 //! Actions: what is done with the scene. The stack effect of each stands in [`crate::actions`].
 
 use arsc_diagnostics::codes::sema as codes;
-use arsc_ir::{Action, Exposure, Observer, PathTrace, WavelengthRange};
+use arsc_ir::{Action, Observer, PathTrace, WavelengthRange};
 use arsc_spectral::{TABLE_MAX_NM, TABLE_MIN_NM};
 
-use super::{Builtin, Param};
+use super::{Builtin, Param, image_actions};
 use crate::code::Site;
 use crate::eval::{Eval, Machine};
-use crate::types::Type::{self, Bool, Float, Int, Str};
+use crate::types::Type::{self, Bool, Int};
 use crate::value::Value;
 
 pub fn builtins() -> Vec<Builtin> {
     let mut list = scene_actions();
-    list.extend(image_actions());
+    list.extend(image_actions::builtins());
     list.extend(words());
-    list.extend(not_yet());
     list
 }
 
@@ -74,48 +73,6 @@ fn path_trace(_: &mut Machine<'_>, a: &[Value], site: &Site) -> Eval {
     Ok(Value::action(Action::PathTrace(trace), site.span))
 }
 
-fn image_actions() -> Vec<Builtin> {
-    let path = |doc| Param::new("path", Str, doc);
-    vec![
-        Builtin::new("tone_map", "Maps radiance to display values. Stack: image<spectral> → image<display>.")
-            .param(
-                Param::new("exposure", Type::Exposure, "`auto`, or `ev(stops)`")
-                    .default_value("auto", Value::Exposure(Exposure::Auto)),
-            )
-            .runs(Type::Action, |_, a, site| {
-                Ok(Value::action(Action::ToneMap { exposure: a[0].as_exposure() }, site.span))
-            }),
-        Builtin::new("ev", "Exposure in stops: radiances are multiplied by 2^stops.")
-            .param(Param::new("stops", Float, "may be negative"))
-            .runs(Type::Exposure, |_, a, _| Ok(Value::Exposure(Exposure::Ev(a[0].as_float())))),
-        Builtin::new("write_exr", "Writes a spectral EXR file. Stack: image<spectral> → image<spectral>.")
-            .param(path("file name within the output directory, ending in `.exr`"))
-            .runs(Type::Action, |_, a, site| {
-                let path = picture_name(&a[0], ".exr", site)?;
-                Ok(Value::action(Action::WriteExr { path }, site.span))
-            }),
-        Builtin::new("write_png", "Writes a PNG file. Stack: image<display> → image<display>.")
-            .param(path("file name within the output directory, ending in `.png`"))
-            .runs(Type::Action, |_, a, site| {
-                let path = picture_name(&a[0], ".png", site)?;
-                Ok(Value::action(Action::WritePng { path }, site.span))
-            }),
-    ]
-}
-
-/// The name of a picture: it says what kind of file it is, and does not lead out of the output folder.
-fn picture_name(value: &Value, ending: &str, site: &Site) -> Eval<String> {
-    let path = value.as_str();
-    let message = if path.starts_with('/') || path.split('/').any(|part| part == "..") {
-        "a picture's name must not lead out of the output folder".to_owned()
-    } else if !path.to_ascii_lowercase().ends_with(ending) || path.len() == ending.len() {
-        format!("the picture's name must end in `{ending}`")
-    } else {
-        return Ok(path.to_string());
-    };
-    Err(site.fail_arg(0, codes::OUT_OF_RANGE, message, "this name"))
-}
-
 fn words() -> Vec<Builtin> {
     vec![
         Builtin::new("dup", "Stack: a → a a.").runs(Type::Action, |_, _, s| Ok(Value::action(Action::Dup, s.span))),
@@ -123,23 +80,5 @@ fn words() -> Vec<Builtin> {
         Builtin::new("drop", "Stack: a →.").runs(Type::Action, |_, _, s| Ok(Value::action(Action::Drop, s.span))),
         Builtin::new("over", "Stack: a b → a b a.")
             .runs(Type::Action, |_, _, s| Ok(Value::action(Action::Over, s.span))),
-    ]
-}
-
-fn not_yet() -> Vec<Builtin> {
-    let path = || Param::new("path", Str, "file");
-    vec![
-        Builtin::new("visualise_polarisation", "Stack: image<spectral> → image<display>.")
-            .later(Type::Action, "the visualisation of polarisation"),
-        Builtin::new("difference_to", "Stack: image<spectral> → image<spectral>.")
-            .param(path())
-            .later(Type::Action, "the difference to a reference"),
-        Builtin::new("denoise", "Stack: image<spectral> → image<spectral>.").later(Type::Action, "denoising"),
-        Builtin::new("convert_colour", "Stack: image<spectral> → image<display>.")
-            .param(Param::new("space", Str, "name of a colour space"))
-            .later(Type::Action, "colour conversion"),
-        Builtin::new("write_tiff", "Stack: image<display> → image<display>.")
-            .param(path())
-            .later(Type::Action, "TIFF output"),
     ]
 }

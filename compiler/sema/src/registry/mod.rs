@@ -6,6 +6,7 @@
 mod actions;
 mod cameras;
 mod csg;
+mod image_actions;
 mod lights;
 mod lists;
 mod materials;
