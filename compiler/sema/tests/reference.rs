@@ -9,6 +9,11 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
 }
 
+fn read_bytes(path: &str) -> Vec<u8> {
+    let path = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read(&path).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
 /// `UPDATE_REFERENCE=1 cargo test -p arsc-sema --test reference` writes the manual anew.
 #[test]
 fn builtins_are_current() {
@@ -20,13 +25,12 @@ fn builtins_are_current() {
     assert!(read("docs/reference/builtins.md") == wanted, "docs/reference/builtins.md is not what the registry says");
 }
 
-#[test]
-fn examples_of_the_language_reference_are_true() {
-    let page = read("docs/reference/language.md");
-    let mut count = 0;
-    for (i, block) in page.split("```arsl\n").skip(1).enumerate() {
+/// Runs the examples of a page and gives their number. `//= CODE` at the end of a line: the example shows this finding.
+fn run_examples(page: &str) -> usize {
+    let text = read(page);
+    let blocks = text.split("```arsl\n").skip(1);
+    for (i, block) in blocks.clone().enumerate() {
         let script = block.split("```").next().unwrap();
-        // `//= CODE` at the end of a line: the example shows this finding.
         let mut wanted: Vec<&str> =
             script.lines().filter_map(|line| line.split_once("//= ")).map(|(_, code)| code).collect();
         let mut session = Session::with_files(&[(
@@ -38,8 +42,23 @@ fn examples_of_the_language_reference_are_true() {
         wanted.sort_unstable();
         found.sort_unstable();
         let shown = describe(&session.sources, &analysed.diagnostics).join("\n");
-        assert_eq!(found, wanted, "example {}:\n{script}\nfound:\n{shown}", i + 1);
-        count += 1;
+        assert_eq!(found, wanted, "{page}, example {}:\n{script}\nfound:\n{shown}", i + 1);
     }
-    assert!(count >= 20, "{count}");
+    blocks.count()
+}
+
+#[test]
+fn examples_of_the_language_reference_are_true() {
+    assert!(run_examples("docs/reference/language.md") >= 20);
+}
+
+/// Every picture has its example, every module with solids its section.
+#[test]
+fn examples_of_the_library_are_true() {
+    assert!(run_examples("docs/reference/library.md") >= 5);
+    let page = read("docs/reference/library.md");
+    for name in page.lines().filter_map(|line| line.strip_prefix("![")?.split("library/").nth(1)?.strip_suffix(")")) {
+        assert!(page.contains(&format!("write_png(\"{name}\")")), "nothing renders {name}");
+        read_bytes(&format!("docs/images/library/{name}"));
+    }
 }
