@@ -34,6 +34,7 @@ impl Placed {
         }
         let region = Region::new(self, cell);
         match self.shape() {
+            &Shape::Torus { major, minor } => return region.classify_torus(major, minor),
             Shape::Paraboloid(paraboloid) => return paraboloid.classify(&region),
             Shape::Hyperboloid(hyperboloid) => return hyperboloid.classify(&region),
             Shape::Polyhedron(polyhedron) => return polyhedron.classify(&region),
@@ -100,10 +101,10 @@ impl Region {
                 self.beyond_slab(0.0, height) || self.axis_distance().0 > radius || self.above_rim(radius, 0.0, height)
             }
             Shape::Cone { base_radius, top_radius, height } => self.misses_cone(base_radius, top_radius, height),
-            Shape::Torus { major, minor } => self.misses_torus(major, minor),
             Shape::HalfSpace => self.z_range().0 > 0.0,
             // They are classified by themselves.
-            Shape::Paraboloid(_)
+            Shape::Torus { .. }
+            | Shape::Paraboloid(_)
             | Shape::Hyperboloid(_)
             | Shape::Polyhedron(_)
             | Shape::Prism(_)
@@ -138,13 +139,28 @@ impl Region {
         self.c.dot(n) - self.reach(n) > base
     }
 
-    fn misses_torus(&self, major: f64, minor: f64) -> bool {
-        if self.beyond_slab(-minor, minor) {
-            return true;
+    /// By the distance of the centre where that decides: most boxes are either far or have the surface near their middle.
+    fn classify_torus(&self, major: f64, minor: f64) -> Classification {
+        let (distance, reach) = (self.tube_distance(major), self.half_diagonal());
+        if distance - reach > minor || self.beyond_slab(-minor, minor) {
+            return Classification::Outside;
+        }
+        if distance + reach <= minor {
+            return Classification::Inside;
+        }
+        if (distance - minor).abs() < self.inner_radius() {
+            return Classification::Boundary;
         }
         let (rho, z) = (self.rho_range(), self.z_range());
         let gap = DVec2::new((rho.0 - major).max(major - rho.1).max(0.0), z.0.max(-z.1).max(0.0));
-        gap.length() > minor || self.tube_distance(major) - self.half_diagonal() > minor
+        let far = DVec2::new((rho.1 - major).max(major - rho.0), z.1.max(-z.0));
+        if gap.length() > minor {
+            Classification::Outside
+        } else if far.length() <= minor {
+            Classification::Inside
+        } else {
+            Classification::Boundary
+        }
     }
 
     /// Distance of the centre from the tube's centre circle: 1-Lipschitz.
@@ -166,14 +182,6 @@ impl Region {
 
     /// Convex shapes hold the region when they hold its corners.
     fn inside(&self, shape: &Shape) -> bool {
-        let Shape::Torus { major, minor } = *shape else {
-            return self.corners().all(|p| shape.contains(p));
-        };
-        if self.tube_distance(major) + self.half_diagonal() <= minor {
-            return true;
-        }
-        let (rho, z) = (self.rho_range(), self.z_range());
-        let far = DVec2::new((rho.1 - major).max(major - rho.0), z.1.max(-z.0));
-        far.length() <= minor
+        self.corners().all(|p| shape.contains(p))
     }
 }

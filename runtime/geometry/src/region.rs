@@ -80,6 +80,14 @@ impl Region {
         self.corners().map(|p| p.distance_squared(self.c)).fold(0.0, f64::max).sqrt()
     }
 
+    /// Radius of a ball about the centre that the region holds.
+    pub(crate) fn inner_radius(&self) -> f64 {
+        let [a, b, c] = self.e;
+        let faces = [a.cross(b), b.cross(c), c.cross(a)];
+        let largest = faces.into_iter().map(DVec3::length_squared).fold(0.0, f64::max);
+        if largest > 0.0 { faces[0].dot(c).abs() / largest.sqrt() } else { 0.0 }
+    }
+
     /// Bounds on the distance from the z axis.
     pub(crate) fn rho_range(&self) -> (f64, f64) {
         let far = self.corners().map(|p| p.truncate().length_squared()).fold(0.0, f64::max).sqrt();

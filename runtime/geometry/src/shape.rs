@@ -142,12 +142,12 @@ impl Shape {
         }
     }
 
-    /// Signed distance to the surface, negative inside, or less in absolute value, for shapes whose crossings cost more than
-    /// that. It changes by at most the distance between two points.
+    /// Whether the ball of this radius about `p` is inside or outside; `None` where the surface may be in it, and for shapes
+    /// whose crossings do not cost more than that.
     #[inline]
-    pub fn distance(&self, p: DVec3) -> Option<f64> {
+    pub fn state_around(&self, p: DVec3, radius: f64) -> Option<bool> {
         match *self {
-            Shape::Torus { major, minor } => Some(torus::distance(major, minor, p)),
+            Shape::Torus { major, minor } => torus::state_around(major, minor, p, radius),
             _ => None,
         }
     }

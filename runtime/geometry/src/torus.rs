@@ -228,11 +228,20 @@ fn polished(major: f64, minor: f64, o: DVec3, dir: DVec3, mut t: f64) -> f64 {
     t
 }
 
-/// Signed distance to the surface, negative inside, where that is no more than a bound (within a spindle's lens).
+/// Whether the ball of this radius about `p` is inside or outside; `None` where the surface may be in it (or within a
+/// spindle's lens).
 #[inline]
-pub(crate) fn distance(major: f64, minor: f64, p: DVec3) -> f64 {
+pub(crate) fn state_around(major: f64, minor: f64, p: DVec3, radius: f64) -> Option<bool> {
     let out = p.truncate().length() - major;
-    (out * out + p.z * p.z).sqrt() - minor
+    let square = out * out + p.z * p.z;
+    let (outer, inner) = (minor + radius, minor - radius);
+    if square > outer * outer {
+        Some(false)
+    } else if inner > 0.0 && square < inner * inner {
+        Some(true)
+    } else {
+        None
+    }
 }
 
 /// u is the azimuth, v the angle around the tube from the outer equator, both over [0, 1].

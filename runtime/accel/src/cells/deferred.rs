@@ -1,16 +1,16 @@
 //! Costly leaves, solved only where the answer hangs on them.
 //!
-//! A torus has a signed distance for a few operations where its crossings take a quartic. So the first transition of a cell
+//! How far a point is from a torus takes a few operations, its crossings take a quartic. So the first transition of a cell
 //! is looked for along the crossings of its other leaves: between them the expression often does not depend on the torus, or
-//! the distance shows that its surface is not near; at them the distance tells its state. Where neither helps, the answer
-//! is given up and the torus is solved after all. The answer is the same, and most rays that hit a grooved ball beside its
-//! grooves solve no quartic.
+//! the distance shows that its surface is not near; at them the distance tells its state. Where neither helps, the tori that
+//! it hangs on are solved, and no others. The answer is the same, and most rays that hit a grooved ball beside its grooves solve no
+//! quartic.
 
 use arsc_geometry::Placed;
 use glam::DVec3;
 
 use crate::cells::query::{Line, Window};
-use crate::cells::{CellLeaf, Leaves};
+use crate::cells::{CellLeaf, Leaves, TABLE_LEAVES};
 use crate::coincidence::Event;
 use crate::transition::Transition;
 
@@ -38,36 +38,55 @@ impl<'a> Distance<'a> {
     /// The state throughout the stretch, if the surface is certainly beyond it.
     fn state(&self, from: f64, to: f64) -> Option<bool> {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        let distance = self.leaf.shape().distance(self.origin + self.dir * middle)?;
-        // False for the NaN of an endless stretch.
-        (distance.abs() > (half + MARGIN * self.tolerance) * self.speed).then_some(distance < 0.0)
+        let margin = (half + MARGIN * self.tolerance) * self.speed;
+        // Not for the NaN of an endless stretch.
+        self.leaf.shape().state_around(self.origin + self.dir * middle, margin)
     }
 }
 
-/// The state of one leaf throughout a stretch of the line, if that is easily known.
+/// The state of one leaf throughout the window, if that is easily known.
 pub fn constant_state(leaf: &CellLeaf, line: &Line, window: &Window) -> Option<bool> {
     let placed = &line.solid.leaves[leaf.leaf as usize];
     Distance::new(placed, line, window.tolerance).state(window.from(), window.to())
 }
 
-/// What is known of a cell with a truth table when some of its leaves are not solved.
+/// What is known of a cell with a truth table when some of its leaves are not solved. Sets of slots are bit sets.
 pub struct Deferral<'a> {
-    pub table: u64,
-    /// States of the solved leaves at the beginning, bit by bit; the others' are clear.
-    pub states: u32,
-    /// The leaves that are not solved.
-    pub deferred: u32,
-    pub leaves: Leaves<'a>,
-    pub line: &'a Line<'a>,
-    pub window: &'a Window,
+    table: u64,
+    leaves: Leaves<'a>,
+    line: &'a Line<'a>,
+    window: &'a Window,
+    /// As far as they have been asked for.
+    distances: [Option<Distance<'a>>; TABLE_LEAVES],
+    /// Slots that are not solved.
+    deferred: u32,
 }
 
-impl Deferral<'_> {
-    /// The first transition in the window, if there is any; `None` where that hangs on crossings of deferred leaves.
-    /// `events` are the others' crossings.
-    pub fn first(&self, events: &[Event]) -> Option<Option<Transition>> {
+impl<'a> Deferral<'a> {
+    /// `unsolved` are the costly leaves whose crossings are not known.
+    pub fn new(table: u64, leaves: Leaves<'a>, line: &'a Line<'a>, window: &'a Window, unsolved: u32) -> Deferral<'a> {
+        Deferral { table, leaves, line, window, distances: [None; TABLE_LEAVES], deferred: unsolved }
+    }
+
+    /// Slots whose crossings are not asked for.
+    pub fn deferred(&self) -> u32 {
+        self.deferred
+    }
+
+    /// Nothing hangs on crossings that are not known.
+    pub fn is_settled(&self) -> bool {
+        self.deferred == 0
+    }
+
+    /// These slots are solved from now on.
+    pub fn solve(&mut self, slots: u32) {
+        self.deferred &= !slots;
+    }
+
+    /// The first transition in the window, if there is any; or the slots whose crossings it hangs on. `events` and `states` are
+    /// those of the other leaves.
+    pub fn first(&mut self, events: &[Event], mut states: u32) -> Result<Option<Transition>, u32> {
         let Window { low, high, tolerance, .. } = *self.window;
-        let mut states = self.states;
         let mut from = self.window.from();
         let mut inside = self.value(states, from, events.first().map_or(self.window.to(), |event| event.t))?;
         for (i, &Event { t, slot, face }) in events.iter().enumerate() {
@@ -76,46 +95,68 @@ impl Deferral<'_> {
             }
             let next = events.get(i + 1).map_or(f64::INFINITY, |event| event.t);
             if next <= t + tolerance {
-                return None;
+                return Err(self.deferred);
             }
-            let before = states;
-            states ^= 1 << slot;
             // Next to the crossing, on both sides.
-            let here = [before, states].map(|states| self.value(states, t, t));
-            let [Some(left), Some(right)] = here else { return None };
+            let after = states ^ 1 << slot;
+            let (left, right) = if self.depends(states) || self.depends(after) {
+                let known = self.states(t, t)?;
+                (self.look_up(states | known), self.look_up(after | known))
+            } else {
+                (self.look_up(states), self.look_up(after))
+            };
+            states = after;
             if left != inside {
-                return None;
+                return Err(self.deferred);
             }
             if right != left && t > low {
                 let flipped = (states >> slot & 1 == 1) != right;
                 let leaf = self.leaves.get(slot as usize).leaf;
-                return Some(Some(Transition { t, leaf, face, entering: right, flipped, shared: false }));
+                return Ok(Some(Transition { t, leaf, face, entering: right, flipped, shared: false }));
             }
             from = t;
             inside = self.value(states, from, next.min(self.window.to()))?;
         }
-        Some(None)
+        Ok(None)
     }
 
-    /// The value between two neighbouring crossings, if it is the same throughout.
-    fn value(&self, states: u32, from: f64, to: f64) -> Option<bool> {
-        let value = |states: u32| self.table >> states & 1 == 1;
-        let first = value(states);
+    fn look_up(&self, states: u32) -> bool {
+        self.table >> states & 1 == 1
+    }
+
+    /// The value is not the same whatever the states of the deferred leaves are.
+    fn depends(&self, states: u32) -> bool {
+        let first = self.look_up(states);
         let mut others = self.deferred;
-        let mut depends = false;
         while others != 0 {
-            depends |= value(states | others) != first;
+            if self.look_up(states | others) != first {
+                return true;
+            }
             others = (others - 1) & self.deferred;
         }
-        if !depends {
-            return Some(first);
+        false
+    }
+
+    /// The value between two neighbouring crossings; or the slots that it hangs on, as far as it may change between them.
+    fn value(&mut self, states: u32, from: f64, to: f64) -> Result<bool, u32> {
+        if !self.depends(states) {
+            return Ok(self.look_up(states));
         }
-        let mut known = states;
-        for (slot, leaf) in self.leaves.iter().enumerate().filter(|(slot, _)| self.deferred >> slot & 1 == 1) {
-            let placed = &self.line.solid.leaves[leaf.leaf as usize];
-            let state = Distance::new(placed, self.line, self.window.tolerance).state(from, to)?;
-            known |= u32::from(state) << slot;
+        let known = self.states(from, to)?;
+        Ok(self.look_up(states | known))
+    }
+
+    /// States of the deferred leaves throughout a stretch; or those that may change there.
+    fn states(&mut self, from: f64, to: f64) -> Result<u32, u32> {
+        let (mut inside, mut unclear) = (0, 0);
+        for (slot, known) in self.distances.iter_mut().enumerate().filter(|(slot, _)| self.deferred >> slot & 1 == 1) {
+            let placed = &self.line.solid.leaves[self.leaves.get(slot).leaf as usize];
+            let distance = known.get_or_insert_with(|| Distance::new(placed, self.line, self.window.tolerance));
+            match distance.state(from, to) {
+                Some(state) => inside |= u32::from(state) << slot,
+                None => unclear |= 1 << slot,
+            }
         }
-        Some(value(known))
+        if unclear == 0 { Ok(inside) } else { Err(unclear) }
     }
 }

@@ -287,30 +287,24 @@ fn several(
     all: bool,
     visit: impl FnMut(Transition) -> bool,
 ) {
-    let mut events = Events::new();
-    let mut states = 0;
-    if !all && leaves.iter().any(|leaf| line.is_unsolved(leaf, scratch)) {
-        let (mut deferred, mut left_out) = (0, 0);
-        for (slot, leaf) in leaves.iter().enumerate().filter(|(_, leaf)| line.is_unsolved(leaf, scratch)) {
-            match constant_state(leaf, line, window) {
-                Some(state) => states |= u32::from(state) << slot,
-                None => deferred |= 1 << slot,
-            }
-            left_out |= 1 << slot;
+    let unsolved = leaves.iter().enumerate().filter(|(_, leaf)| !all && line.is_unsolved(leaf, scratch));
+    let unsolved = unsolved.fold(0, |slots, (slot, _)| slots | 1 << slot);
+    let mut deferral = (unsolved != 0).then(|| Deferral::new(table, leaves, line, window, unsolved));
+    loop {
+        let deferred = deferral.as_ref().map_or(0, Deferral::deferred);
+        let (mut events, mut states) = (Events::new(), 0);
+        gather(leaves, deferred, line, window, scratch, &mut events, |slot, state| states |= u32::from(state) << slot);
+        match &mut deferral {
+            Some(deferral) if !deferral.is_settled() => match deferral.first(&events, states) {
+                Ok(first) => {
+                    first.map(visit);
+                    return;
+                }
+                Err(slots) => deferral.solve(slots),
+            },
+            _ => return walk(leaves, &events, window, Bits { states, table }, visit),
         }
-        gather(leaves, left_out, line, window, scratch, &mut events, |slot, state| states |= u32::from(state) << slot);
-        if deferred == 0 {
-            return walk(leaves, &events, window, Bits { states, table }, visit);
-        }
-        if let Some(first) = (Deferral { table, states, deferred, leaves, line, window }).first(&events) {
-            first.map(visit);
-            return;
-        }
-        events.clear();
-        states = 0;
     }
-    gather(leaves, 0, line, window, scratch, &mut events, |slot, state| states |= u32::from(state) << slot);
-    walk(leaves, &events, window, Bits { states, table }, visit);
 }
 
 /// States of the leaves of a union.

@@ -57,19 +57,22 @@ pub fn best_split(cell: &Aabb, leaves: &[u32], tokens: &[Token], placed: &[Place
         if high - low <= 8.0 * pad {
             continue;
         }
-        for position in positions(low, high, axis, &clipped) {
-            let cost: f64 = halves(cell, axis, position)
-                .iter()
-                .map(|half| {
-                    let weight = if leaves.len() > EXACT_LEAVES {
-                        overlapping_weight(half, leaves, &clipped, placed)
-                    } else {
-                        exact_weight(&half.dilated(pad), leaves, tokens, placed, &mut scratch)
-                    };
-                    half_area(half) * weight
-                })
-                .sum();
-            let relative_cost = cost / whole;
+        let planes = positions(low, high, axis, &clipped);
+        let exact = leaves.len() <= EXACT_LEAVES;
+        let known = if exact { nested_states(cell, axis, &planes, leaves, placed, pad) } else { [vec![], vec![]] };
+        for (i, &position) in planes.iter().enumerate() {
+            let ranks = [i, planes.len() - 1 - i];
+            let halves = halves(cell, axis, position);
+            let cost = |side: usize, scratch: &mut Vec<Token>| {
+                let half = &halves[side];
+                let weight = if exact {
+                    exact_weight(leaves, tokens, placed, |leaf| known[side][leaf].at(ranks[side]), scratch)
+                } else {
+                    overlapping_weight(half, leaves, &clipped, placed)
+                };
+                half_area(half) * weight
+            };
+            let relative_cost = (cost(0, &mut scratch) + cost(1, &mut scratch)) / whole;
             if best.is_none_or(|best| relative_cost < best.relative_cost) {
                 best = Some(Split { axis, position, relative_cost });
             }
@@ -82,7 +85,49 @@ fn total_weight(leaves: &[u32], placed: &[Placed]) -> f64 {
     leaves.iter().map(|&leaf| weight(placed[leaf as usize].shape())).sum()
 }
 
-/// Planes to try: even ones, and with few leaves some edges of their boxes.
+/// A leaf's state over nested boxes, which are ranked from the smallest: that of all before `count`; beyond it has none.
+#[derive(Clone, Copy)]
+struct Nested {
+    count: usize,
+    state: Option<bool>,
+}
+
+impl Nested {
+    fn at(self, rank: usize) -> Option<bool> {
+        if rank < self.count { self.state } else { None }
+    }
+}
+
+/// What every leaf is over the lower and over the upper halves that the planes (ascending) make. A state of a box is that of
+/// every box within, so bisection finds them all.
+fn nested_states(
+    cell: &Aabb,
+    axis: usize,
+    planes: &[f64],
+    leaves: &[u32],
+    placed: &[Placed],
+    pad: f64,
+) -> [Vec<Nested>; 2] {
+    [0, 1].map(|side| {
+        let plane = |rank: usize| planes[if side == 0 { rank } else { planes.len() - 1 - rank }];
+        let half = |rank: usize| halves(cell, axis, plane(rank))[side].dilated(pad);
+        let nested = |&leaf: &u32| {
+            let mut nested = Nested { count: 0, state: None };
+            let mut end = planes.len();
+            while nested.count < end {
+                let middle = (nested.count + end) / 2;
+                match state(&placed[leaf as usize], &half(middle)) {
+                    Some(state) => nested = Nested { count: middle + 1, state: Some(state) },
+                    None => end = middle,
+                }
+            }
+            nested
+        };
+        leaves.iter().map(nested).collect()
+    })
+}
+
+/// Planes to try, ascending: even ones, and with few leaves some edges of their boxes.
 fn positions(low: f64, high: f64, axis: usize, clipped: &[Aabb]) -> Vec<f64> {
     let even = if clipped.len() > EXACT_LEAVES { BINS } else { 4 };
     let mut list: Vec<f64> = (1..even).map(|i| low + (high - low) * i as f64 / even as f64).collect();
@@ -94,6 +139,7 @@ fn positions(low: f64, high: f64, axis: usize, clipped: &[Aabb]) -> Vec<f64> {
         edges.dedup();
         let stride = edges.len().div_ceil(EDGES).max(1);
         list.extend(edges.iter().skip(stride / 2).step_by(stride));
+        list.sort_unstable_by(f64::total_cmp);
     }
     list
 }
@@ -104,10 +150,16 @@ fn overlapping_weight(half: &Aabb, leaves: &[u32], clipped: &[Aabb], placed: &[P
     if sum > 0.0 { CELL_COST + sum } else { 0.0 }
 }
 
-/// Weight of what is left of the expression; nothing for a cell without surface.
-fn exact_weight(half: &Aabb, leaves: &[u32], tokens: &[Token], placed: &[Placed], scratch: &mut Vec<Token>) -> f64 {
-    let states: Vec<Option<bool>> = leaves.iter().map(|&leaf| state(&placed[leaf as usize], half)).collect();
-    let value = |leaf: u32| leaves.binary_search(&leaf).ok().and_then(|i| states[i]);
+/// Weight of what is left of the expression; nothing for a cell without surface. `state` gives the state of a leaf by its
+/// position in the list.
+fn exact_weight(
+    leaves: &[u32],
+    tokens: &[Token],
+    placed: &[Placed],
+    state: impl Fn(usize) -> Option<bool>,
+    scratch: &mut Vec<Token>,
+) -> f64 {
+    let value = |leaf: u32| leaves.binary_search(&leaf).ok().and_then(&state);
     scratch.clear();
     if substitute(tokens, value, scratch).is_some() {
         return 0.0;
