@@ -188,3 +188,87 @@ fn slips_and_bad_files_are_refused_and_leave_nothing() {
         }
     }
 }
+
+const SCRIPT: &str = "
+import std.action { add, crop, downscale, key, linear_polariser, merge, multiply }
+import std.material { dielectric }
+scene {
+    sphere() |> with(dielectric(1.5))
+    environment(constant_emission(1))
+}
+camera perspective(eye: (0, -4, 2), target: (0, 0, 0), fov: 40deg, resolution: (16, 12))
+actions {
+    path_trace(samples: 2, polarised: true)
+    over()
+    path_trace(samples: 2, polarised: true, seed: 1)
+    swap()
+    drop()
+    merge()
+    write_csv(\"bands.csv\")
+    dup()
+    visualise_polarisation(quantity: \"orientation\", most: 0.5, overlay: \"picture\")
+    write_tiff(\"orientation.tif\", sixteen_bit: true)
+    drop()
+    crop(2, 2, 14, 12)
+    downscale()
+    multiply(2)
+    dup()
+    add()
+    linear_polariser(30deg, strength: 0.5)
+    write_exr(\"small.exr\")
+    tone_map(exposure: key(0.3), curve: \"agx\", white: \"D50\", space: \"display_p3\", slice: 550nm)
+    write_png(\"small.png\", sixteen_bit: true)
+}";
+
+#[test]
+fn actions_do_what_the_commands_do() {
+    let folder = Folder::new();
+    folder.put("scene.arsl", SCRIPT.as_bytes());
+    let (script, out) = (folder.path("scene.arsl").display().to_string(), folder.0.path().display().to_string());
+    let run = arsc(&["render", &script, "-o", &out, "--quiet"]);
+    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    assert_eq!((folder.open("small.exr").width(), folder.open("small.exr").height()), (6, 5));
+    assert_eq!(folder.open("small.exr").noted("samples"), Some("4"));
+    assert!(folder.open("orientation.tif").width() > 16 && folder.open("bands.csv").width() == 16);
+    assert_eq!(folder.open("small.png").width(), 6);
+    let compare = "path_trace(samples: 1); difference_to(\"REFERENCE\", metric: \"flip\"); write_png(\"d.png\")";
+    for (reference, status, words) in [
+        ("small.exr", 2, "differ in size"),
+        ("bands.csv", 0, "difference to bands.csv: flip mean"),
+        ("missing.exr", 2, "missing.exr"),
+        ("../outside.exr", 2, "outside.exr"),
+    ] {
+        let actions = format!("actions {{ {} }}", compare.replace("REFERENCE", reference));
+        let text = format!("{}{actions}", SCRIPT.split("actions {").next().expect("a scene"));
+        folder.put("compare.arsl", text.as_bytes());
+        let script = folder.path("compare.arsl").display().to_string();
+        let run = arsc(&["render", &script, "-o", &out, "--quiet"]);
+        assert_eq!(run.status.code(), Some(status), "{reference}: {}", stderr(&run));
+        assert!(stderr(&run).contains(words), "{reference}: {}", stderr(&run));
+    }
+}
+
+#[test]
+fn wrong_words_in_actions_are_findings() {
+    let folder = Folder::new();
+    for (action, words) in [
+        ("tone_map(curve: \"agxx\")", "\"agxx\" is none of"),
+        ("tone_map(white: \"D66\")", "no white point is called"),
+        ("tone_map(target: 0.5)", "exponential"),
+        ("visualise_polarisation(quantity: \"dop\")", "none of \"degree\""),
+        ("difference_to(\"a.exr\", wavelength: 500nm)", "plus_minus"),
+        ("merge()", "needs two spectral images"),
+        ("crop(3, 0, 3, 1)", "is empty"),
+        ("write_tiff(\"a.png\")", "must end in `.tif`"),
+    ] {
+        let text = format!(
+            "import std.action {{ crop, merge }}\nscene {{ sphere() }}\nactions {{ path_trace(); {action}; write_png(\"b.png\") }}"
+        );
+        folder.put("wrong.arsl", text.as_bytes());
+        let run = arsc(&["check", &folder.path("wrong.arsl").display().to_string()]);
+        let said = stdout(&run) + &stderr(&run);
+        // Findings are wrapped to the width of the page.
+        let flat: String = said.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        assert!(run.status.code() == Some(1) && flat.contains(words), "{action}: {said}");
+    }
+}

@@ -85,8 +85,8 @@ fn compare(args: &Args) -> Result<Exit, Exit> {
     // Spectra of other bands have no errors in common; their colours were compared all the same.
     let errors = errors(&a, &b).ok();
     match args.format {
-        Format::Text => print_text(&difference, &statistics, errors.as_ref()),
-        Format::Json => println!("{}", json(&difference, &statistics, errors.as_ref())),
+        Format::Text => pictures::print(&text(&difference, &statistics, errors.as_ref())),
+        Format::Json => pictures::print(&format!("{}\n", json(&difference, &statistics, errors.as_ref()))),
     }
     if let Some(output) = &args.output {
         let image = difference.picture(args.max, !args.no_scale);
@@ -103,22 +103,24 @@ fn compare(args: &Args) -> Result<Exit, Exit> {
     Ok(if fails { Exit::Findings } else { Exit::Clean })
 }
 
-fn print_text(difference: &Difference, statistics: &Statistics, errors: Option<&Errors>) {
+fn text(difference: &Difference, statistics: &Statistics, errors: Option<&Errors>) -> String {
+    let name = difference.metric.name();
     let unit = if difference.metric.is_signed() { " (magnitudes)" } else { "" };
-    println!("{}{unit}: mean {:.6}, median {:.6}", difference.metric.name(), statistics.mean, statistics.median);
-    println!(
-        "95 % of the pixels at most {:.6}, greatest {:.6}, root mean square {:.6}",
+    let mut text = format!("{name}{unit}: mean {:.6}, median {:.6}\n", statistics.mean, statistics.median);
+    text.push_str(&format!(
+        "95 % of the pixels at most {:.6}, greatest {:.6}, root mean square {:.6}\n",
         statistics.percentile_95, statistics.greatest, statistics.root_mean_square
-    );
+    ));
     if let Some(errors) = errors {
-        println!(
-            "values: root mean square error {:.6e}, PSNR {:.2} dB, SNR {:.2} dB",
+        text.push_str(&format!(
+            "values: root mean square error {:.6e}, PSNR {:.2} dB, SNR {:.2} dB\n",
             errors.root_mean_square, errors.peak_signal_to_noise_db, errors.signal_to_noise_db
-        );
+        ));
     }
     if statistics.not_finite > 0 {
-        println!("pixels that cannot be compared: {}", statistics.not_finite);
+        text.push_str(&format!("pixels that cannot be compared: {}\n", statistics.not_finite));
     }
+    text
 }
 
 fn json(difference: &Difference, statistics: &Statistics, errors: Option<&Errors>) -> serde_json::Value {

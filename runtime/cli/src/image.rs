@@ -1,6 +1,5 @@
 //! `arsc image`: looks into pictures, cuts, shrinks, adds, merges and converts them.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use arsc_image::{Depth, Picture};
@@ -153,7 +152,7 @@ fn info(path: &Path) -> Result<(), Exit> {
     for (name, value) in picture.metadata() {
         text.push_str(&format!("{name}: {value}\n"));
     }
-    print(&text);
+    pictures::print(&text);
     Ok(())
 }
 
@@ -161,7 +160,7 @@ fn pixel(path: &Path, place: [u32; 2], plot: Option<&Path>) -> Result<(), Exit> 
     const SIZE: [usize; 2] = [720, 400];
     let picture = pictures::load(path)?;
     let pixel = probe::pixel(&picture, place).map_err(|error| pictures::refused(path, error))?;
-    print(&pixel.to_string());
+    pictures::print(&pixel.to_string());
     let Some(file) = plot else { return Ok(()) };
     let drawn = probe::spectrum_plot(&pixel, SIZE).ok_or_else(|| pictures::refused(path, ImagingError::NoSpectrum))?;
     if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
@@ -169,9 +168,4 @@ fn pixel(path: &Path, place: [u32; 2], plot: Option<&Path>) -> Result<(), Exit> 
     } else {
         pictures::save_display(file, &drawn.to_pixels(), Depth::Eight)
     }
-}
-
-/// A reader that has seen enough, such as `head`, is no error.
-fn print(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
 }

@@ -1,6 +1,7 @@
 //! Pictures named on the command line: read whatever they are, written as their names say.
 
 use std::fmt;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use arsc_image::{Depth, DisplayImage, Picture};
@@ -49,8 +50,13 @@ pub fn refused(path: &Path, error: ImagingError) -> Exit {
 /// Writes the whole file or nothing, and says so.
 pub fn save(path: &Path, bytes: &[u8]) -> Result<(), Exit> {
     arsc_image::write_whole(path, bytes).map_err(|error| failure(&error))?;
-    println!("wrote {}", path.display());
+    print(&format!("wrote {}\n", path.display()));
     Ok(())
+}
+
+/// A reader that has seen enough, such as `head`, is no error.
+pub fn print(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
 /// Kinds of files that pictures are written as.
