@@ -1,10 +1,14 @@
 //! What varies over a surface, against means that are known.
 
+use std::sync::Arc;
+
 use arsc_accel::{Shape, SurfaceShape};
 use arsc_render::bsdf::{MicrofacetShape, Microfacets};
-use arsc_render::{Bsdf, Environment, Light, Material, Parameter, VaryingBsdf, VaryingPart};
-use arsc_spectral::{DenseSpectrum, Spectrum};
-use arsc_texture::{Binary, Expression, ExpressionGraph, Input, Noise, Step, Unary};
+use arsc_render::{
+    Bsdf, ColorTexture, Environment, Light, Material, Parameter, SpectrumTerm, VaryingBsdf, VaryingPart,
+};
+use arsc_spectral::{Channels, DenseSpectrum, Raster, Spectrum};
+use arsc_texture::{Binary, Expression, ExpressionGraph, ImageMap, Input, Noise, Step, Unary};
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::support::{Estimate, Stage, camera, constant, estimate, render, spot_camera};
@@ -18,9 +22,14 @@ fn part(weight: f64, bsdf: Bsdf) -> VaryingPart {
     VaryingPart { weight: Expression::constant(weight), bsdf, parameters: Vec::new() }
 }
 
+fn grey(weight: Expression) -> Parameter {
+    let spectrum = DenseSpectrum::new(&constant(1.0));
+    Parameter::Reflectance(vec![SpectrumTerm { weight, spectrum, color: None }])
+}
+
 fn coloured(reflectance: Expression) -> Material {
     let bsdf = Bsdf::lambert(&constant(0.5));
-    let parameters = vec![Parameter::Reflectance(vec![(reflectance, DenseSpectrum::new(&constant(1.0)))])];
+    let parameters = vec![grey(reflectance)];
     varying(vec![VaryingPart { weight: Expression::constant(1.0), bsdf, parameters }], DAffine3::IDENTITY)
 }
 
@@ -60,8 +69,7 @@ fn places_are_found_in_the_space_of_the_texture() {
         stage.environments.push(Environment::constant(&constant(1.0)));
         let material = {
             let bsdf = Bsdf::lambert(&constant(0.5));
-            let one = DenseSpectrum::new(&constant(1.0));
-            let parameters = vec![Parameter::Reflectance(vec![(input(Input::X), one)])];
+            let parameters = vec![grey(input(Input::X))];
             let part = VaryingPart { weight: Expression::constant(1.0), bsdf, parameters };
             varying(vec![part], DAffine3::from_translation(DVec3::X * shift))
         };
@@ -112,7 +120,7 @@ fn constant_parameters_give_the_plain_picture() {
     let rough =
         |shape, alpha: f64| Bsdf::rough_conductor(&constant(0.3), &constant(3.0), Microfacets::new(shape, [alpha; 2]));
     let of = |value: f64| Expression::constant(value);
-    let reflectance = || Parameter::Reflectance(vec![(of(0.4), DenseSpectrum::new(&constant(1.0)))]);
+    let reflectance = || grey(of(0.4));
     let other = constant(0.9);
     let mut cases = vec![
         (Bsdf::lambert(&grey), Bsdf::lambert(&other), vec![reflectance()]),
@@ -200,4 +208,27 @@ fn bumps_gain_no_energy() {
     let camera = camera(DVec3::new(0.0, -4.0, 0.0), DVec3::ZERO, 0.4, 32);
     let Estimate { mean, standard_error } = estimate(&render(&stage.build(), &camera, 32, 50));
     assert!(mean < 1.0 + 5.0 * standard_error && mean > 0.9, "{mean}");
+}
+
+/// Four pixels on a rectangle in a furnace: each corner shows its own, and the middle their mean.
+#[test]
+fn pictures_lie_as_they_are_seen() {
+    let values = [0.1, 0.2, 0.3, 0.4].into_iter().flat_map(|grey| [grey; 3]).collect();
+    let raster = Arc::new(Raster::new(2, 2, Channels::Rgb, values).expect("four pixels"));
+    let image = Arc::new(ImageMap::new("four.png".into(), raster, false, true, false));
+    let floor = || {
+        let uv = [input(Input::U), input(Input::V)];
+        let (weight, spectrum) = (Expression::constant(1.0), DenseSpectrum::new(&constant(1.0)));
+        let term = SpectrumTerm { weight, spectrum, color: Some(ColorTexture::Image { image: image.clone(), uv }) };
+        let bsdf = Bsdf::lambert(&constant(0.5));
+        let parameters = vec![Parameter::Reflectance(vec![term])];
+        varying(vec![VaryingPart { weight: Expression::constant(1.0), bsdf, parameters }], DAffine3::IDENTITY)
+    };
+    for (x, y, wanted) in [(-0.9, 0.9, 0.1), (0.9, 0.9, 0.2), (-0.9, -0.9, 0.3), (0.9, -0.9, 0.4), (0.0, 0.0, 0.25)] {
+        let mut stage = Stage::default();
+        stage.environments.push(Environment::constant(&constant(1.0)));
+        stage.surface(SurfaceShape::Rectangle { size: DVec2::splat(2.0) }, DAffine3::IDENTITY, floor());
+        let camera = spot_camera(DVec3::new(x, y, 5.0), DVec3::new(x, y, 0.0));
+        estimate(&render(&stage.build(), &camera, 1024, 1)).assert_is(wanted, 5e-3);
+    }
 }

@@ -36,13 +36,13 @@ pub use material::{Attributes, Bsdf, CutRule, Distribution, Emitter, Facets, Mat
 pub use medium::{Density, Medium, PhaseFunction};
 pub use node::{Leaf, Node, NodeId, NodeKind, Precedence, Surface};
 pub use read::{Contents, ReadError, read, read_with};
-pub use varying::{Parameter, Part, SpectrumTerm, SpectrumTexture, Varying};
+pub use varying::{ColorTexture, Parameter, Part, SpectrumTerm, SpectrumTexture, Varying};
 pub use verify::{Violation, verify};
 
 pub use arsc_geometry::{Aabb, Shape};
 pub use arsc_spectral::tone::{Exposure, ToneMap};
 pub use arsc_spectral::{Observer, Spectrum, WavelengthRange};
-pub use arsc_texture::Expression;
+pub use arsc_texture::{Expression, ImageMap};
 
 /// A scene with its camera and its action sequence.
 #[derive(Clone, Debug, PartialEq)]

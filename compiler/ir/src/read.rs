@@ -111,7 +111,7 @@ fn statement(cursor: &mut Cursor, ir: &mut Ir, contents: &dyn Contents) -> Resul
     match cursor.word()? {
         "bsdf" => {
             let term = definition(cursor, 'b', ir.bsdfs.len())?;
-            ir.bsdfs.push(bsdf(term)?);
+            ir.bsdfs.push(bsdf(term, contents)?);
         }
         "emitter" => {
             let term = definition(cursor, 'e', ir.emitters.len())?;
@@ -208,10 +208,10 @@ pub(crate) fn spectrum(term: Term) -> Result<Spectrum, Fault> {
     Ok(spectrum)
 }
 
-pub(crate) fn bsdf(term: Term) -> Result<Bsdf, Fault> {
+pub(crate) fn bsdf(term: Term, contents: &dyn Contents) -> Result<Bsdf, Fault> {
     let mut args = Args::new(term)?;
     if args.name == "varying" {
-        return crate::varying_text::varying(args).map(|varying| Bsdf::Varying(varying.into()));
+        return crate::varying_text::varying(args, contents).map(|varying| Bsdf::Varying(varying.into()));
     }
     let bsdf = match args.name {
         "lambert" => Bsdf::Lambert { reflectance: spectrum(args.take("reflectance")?)? },
@@ -234,8 +234,8 @@ pub(crate) fn bsdf(term: Term) -> Result<Bsdf, Fault> {
         }
         "retarder" => Bsdf::Retarder { retardance: args.float("retardance")?, angle: args.float("angle")? },
         "layered" => Bsdf::Layered {
-            coat: Arc::new(bsdf(args.take("coat")?)?),
-            base: Arc::new(bsdf(args.take("base")?)?),
+            coat: Arc::new(bsdf(args.take("coat")?, contents)?),
+            base: Arc::new(bsdf(args.take("base")?, contents)?),
             absorption: spectrum(args.take("absorption")?)?,
             thickness: args.float("thickness")?,
         },

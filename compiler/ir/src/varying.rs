@@ -5,9 +5,11 @@
 //! Expressions read places in the space in which the material was attached: `texture_from_object` leads there from the
 //! object space of the leaf, and the pass that moves attributes to the leaves completes it.
 
+use std::sync::Arc;
+
 use arsc_geometry::DAffine3;
 use arsc_spectral::Spectrum;
-use arsc_texture::{Expression, Needs};
+use arsc_texture::{Expression, ImageMap, Needs};
 
 use crate::Bsdf;
 
@@ -57,6 +59,26 @@ pub struct SpectrumTexture {
 pub struct SpectrumTerm {
     pub weight: Expression,
     pub spectrum: Spectrum,
+    /// The term is multiplied by a colour that varies.
+    pub color: Option<ColorTexture>,
+}
+
+/// A reflectance of a colour that varies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ColorTexture {
+    /// Linear sRGB.
+    Rgb([Expression; 3]),
+    /// A picture at surface coordinates.
+    Image { image: Arc<ImageMap>, uv: [Expression; 2] },
+}
+
+impl ColorTexture {
+    pub fn expressions(&self) -> &[Expression] {
+        match self {
+            ColorTexture::Rgb(rgb) => rgb,
+            ColorTexture::Image { uv, .. } => uv,
+        }
+    }
 }
 
 impl Varying {
@@ -86,9 +108,12 @@ impl Varying {
 }
 
 impl Parameter {
-    pub fn expressions(&self) -> Vec<&Expression> {
+    pub fn expressions<'a>(&'a self) -> Vec<&'a Expression> {
         match self {
-            Parameter::Reflectance(texture) => texture.terms.iter().map(|term| &term.weight).collect(),
+            Parameter::Reflectance(texture) => {
+                let of_color = |term: &'a SpectrumTerm| term.color.iter().flat_map(ColorTexture::expressions);
+                texture.terms.iter().flat_map(|term| std::iter::once(&term.weight).chain(of_color(term))).collect()
+            }
             Parameter::Sigma(expression) | Parameter::Exponent(expression) | Parameter::Height(expression) => {
                 vec![expression]
             }

@@ -8,14 +8,15 @@
 //! An expression lists its steps: a number, an input by its name, or an operation on earlier steps, counted from 0.
 
 use std::fmt::{self, Display, Formatter};
+use std::sync::Arc;
 
-use arsc_texture::{Binary, Expression, Input, Noise, Step, Unary};
+use arsc_texture::{Binary, Expression, ImageMap, Input, Noise, Step, Unary};
 
 use crate::args::{Args, float, integer};
-use crate::print::Text;
-use crate::read::{bsdf, spectrum};
+use crate::print::{Quoted, Text};
+use crate::read::{Contents, bsdf, spectrum};
 use crate::term::{Fault, Term, TermKind};
-use crate::varying::{Parameter, Part, SpectrumTerm, SpectrumTexture, Varying};
+use crate::varying::{ColorTexture, Parameter, Part, SpectrumTerm, SpectrumTexture, Varying};
 use crate::write::{Call, Float};
 
 impl Display for Text<'_, Varying> {
@@ -53,20 +54,46 @@ impl Display for Text<'_, SpectrumTexture> {
 
 impl Display for Text<'_, SpectrumTerm> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        Call::new(f, "term")?.value(Text(&self.0.weight))?.value(Text(&self.0.spectrum))?.end()
+        let call = Call::new(f, "term")?.value(Text(&self.0.weight))?.value(Text(&self.0.spectrum))?;
+        match &self.0.color {
+            None => call.end(),
+            Some(color) => call.arg("color", Text(color))?.end(),
+        }
     }
+}
+
+impl Display for Text<'_, ColorTexture> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            ColorTexture::Rgb([r, g, b]) => Call::new(f, "rgb")?.value(Text(r))?.value(Text(g))?.value(Text(b))?.end(),
+            ColorTexture::Image { image, uv: [u, v] } => {
+                picture(Call::new(f, "image")?.value(Text(u))?.value(Text(v))?, image)?.end()
+            }
+        }
+    }
+}
+
+fn picture<'a, 'b>(call: Call<'a, 'b>, image: &ImageMap) -> Result<Call<'a, 'b>, fmt::Error> {
+    let call = call.arg("path", Quoted(&image.path))?.arg("repeat", image.repeat)?;
+    call.arg("smooth", image.smooth)?.arg("data", image.data)
 }
 
 impl Display for Text<'_, Expression> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let call = Call::new(f, "expression")?;
-        self.0.steps().iter().try_fold(call, |call, step| call.value(Text(step)))?.end()
+        self.0.steps().iter().try_fold(call, |call, step| call.value(Text(&(step, self.0.images()))))?.end()
     }
 }
 
-impl Display for Text<'_, Step> {
+/// A step, with the pictures of its expression.
+impl Display for Text<'_, (&Step, &[Arc<ImageMap>])> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match *self.0 {
+        let (step, images) = *self.0;
+        match *step {
+            Step::Image { image, channel, uv: [u, v] } => {
+                let call = Call::new(f, "image")?.value(u)?.value(v)?.arg("channel", channel)?;
+                picture(call, &images[image as usize])?.end()
+            }
             Step::Constant(value) => write!(f, "{}", Float(value)),
             Step::Input(input) => f.write_str(input.name()),
             Step::Unary(op, a) => Call::new(f, op.name())?.value(a)?.end(),
@@ -94,11 +121,11 @@ impl Display for Text<'_, Step> {
     }
 }
 
-pub(crate) fn varying(mut args: Args) -> Result<Varying, Fault> {
+pub(crate) fn varying(mut args: Args, contents: &dyn Contents) -> Result<Varying, Fault> {
     let texture_from_object = args.map()?;
     let mut parts = Vec::new();
     while !args.rest.is_empty() {
-        parts.push(part(args.next()?)?);
+        parts.push(part(args.next()?, contents)?);
     }
     Ok(Varying { parts, texture_from_object })
 }
@@ -108,15 +135,17 @@ fn named<'a>(term: Term<'a>, name: &str) -> Result<Args<'a>, Fault> {
     if args.name == name { Ok(args) } else { args.unknown(name) }
 }
 
-fn part(term: Term) -> Result<Part, Fault> {
+fn part(term: Term, contents: &dyn Contents) -> Result<Part, Fault> {
+    let expression = |term| expression(term, contents);
     let mut args = named(term, "part")?;
-    let mut part = Part { bsdf: bsdf(args.next()?)?, weight: expression(args.take("weight")?)?, parameters: vec![] };
+    let mut part =
+        Part { bsdf: bsdf(args.next()?, contents)?, weight: expression(args.take("weight")?)?, parameters: vec![] };
     // The order of the parameters is part of what equality means.
     while let Some((name, _)) = args.rest.front() {
         let (name, offset) = (*name, args.offset);
         let Some((_, term)) = args.rest.pop_front() else { break };
         part.parameters.push(match name {
-            Some("reflectance") => Parameter::Reflectance(blend(term)?),
+            Some("reflectance") => Parameter::Reflectance(blend(term, contents)?),
             Some("sigma") => Parameter::Sigma(expression(term)?),
             Some("exponent") => Parameter::Exponent(expression(term)?),
             Some("height") => Parameter::Height(expression(term)?),
@@ -133,28 +162,55 @@ fn part(term: Term) -> Result<Part, Fault> {
     Ok(part)
 }
 
-fn blend(term: Term) -> Result<SpectrumTexture, Fault> {
+fn blend(term: Term, contents: &dyn Contents) -> Result<SpectrumTexture, Fault> {
     let mut args = named(term, "blend")?;
     let mut terms = Vec::new();
     while !args.rest.is_empty() {
         let mut term = named(args.next()?, "term")?;
-        terms.push(SpectrumTerm { weight: expression(term.next()?)?, spectrum: spectrum(term.next()?)? });
+        let (weight, spectrum) = (expression(term.next()?, contents)?, spectrum(term.next()?)?);
+        let color = term.optional("color").map(|color| color_texture(color, contents)).transpose()?;
+        terms.push(SpectrumTerm { weight, spectrum, color });
         term.end()?;
     }
     Ok(SpectrumTexture { terms })
 }
 
-fn expression(term: Term) -> Result<Expression, Fault> {
-    let mut args = named(term, "expression")?;
-    let offset = args.offset;
-    let mut steps = Vec::new();
-    while !args.rest.is_empty() {
-        steps.push(step(args.next()?)?);
-    }
-    Expression::new(steps).map_err(|error| (offset, error.to_string()))
+fn color_texture(term: Term, contents: &dyn Contents) -> Result<ColorTexture, Fault> {
+    let mut args = Args::new(term)?;
+    let mut next = || expression(args.next()?, contents);
+    let first = [next()?, next()?];
+    let color = match args.name {
+        "rgb" => {
+            let [r, g] = first;
+            ColorTexture::Rgb([r, g, expression(args.next()?, contents)?])
+        }
+        "image" => ColorTexture::Image { uv: first, image: image_map(&mut args, contents)? },
+        _ => return args.unknown("colour"),
+    };
+    args.end()?;
+    Ok(color)
 }
 
-fn step(term: Term) -> Result<Step, Fault> {
+fn image_map(args: &mut Args, contents: &dyn Contents) -> Result<Arc<ImageMap>, Fault> {
+    let path = args.text("path")?;
+    let Some(raster) = contents.image(&path) else {
+        return Err((args.offset, format!("there is no image `{path}`")));
+    };
+    let (repeat, smooth, data) = (args.boolean("repeat")?, args.boolean("smooth")?, args.boolean("data")?);
+    Ok(Arc::new(ImageMap::new(path.into(), raster, repeat, smooth, data)))
+}
+
+fn expression(term: Term, contents: &dyn Contents) -> Result<Expression, Fault> {
+    let mut args = named(term, "expression")?;
+    let offset = args.offset;
+    let (mut steps, mut images) = (Vec::new(), Vec::new());
+    while !args.rest.is_empty() {
+        steps.push(step(args.next()?, &mut images, contents)?);
+    }
+    Expression::with_images(steps, images).map_err(|error| (offset, error.to_string()))
+}
+
+fn step(term: Term, images: &mut Vec<Arc<ImageMap>>, contents: &dyn Contents) -> Result<Step, Fault> {
     match term.kind {
         TermKind::Number(_) => return Ok(Step::Constant(float(&term)?)),
         TermKind::Word(word) => {
@@ -169,6 +225,14 @@ fn step(term: Term) -> Result<Step, Fault> {
         Step::Unary(op, operand(&mut args)?)
     } else if let Some(op) = Binary::ALL.into_iter().find(|op| op.name() == name) {
         Step::Binary(op, operand(&mut args)?, operand(&mut args)?)
+    } else if name == "image" {
+        let uv = [operand(&mut args)?, operand(&mut args)?];
+        let channel = args.integer("channel")?;
+        let map = image_map(&mut args, contents)?;
+        let known = images.iter().position(|known| *known == map);
+        let image = known.unwrap_or(images.len()) as u32;
+        images.extend(known.is_none().then_some(map));
+        Step::Image { image, channel, uv }
     } else if name == "select" {
         Step::Select(operand(&mut args)?, operand(&mut args)?, operand(&mut args)?)
     } else {

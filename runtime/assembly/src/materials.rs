@@ -5,7 +5,8 @@ use std::sync::Arc;
 use arsc_ir::{Environment, Ir, NodeKind};
 use arsc_render::bsdf::{MicrofacetShape, Microfacets};
 use arsc_render::{
-    AreaEmitter, Bsdf, Density, Material, Media, Medium, Parameter, PhaseFunction, VaryingBsdf, VaryingPart,
+    AreaEmitter, Bsdf, ColorTexture, Density, Material, Media, Medium, Parameter, PhaseFunction, SpectrumTerm,
+    VaryingBsdf, VaryingPart,
 };
 use arsc_spectral::{DenseSpectrum, Spectrum};
 
@@ -88,10 +89,21 @@ fn lower_varying(varying: &arsc_ir::Varying) -> Result<VaryingBsdf, AssemblyErro
     VaryingBsdf::new(parts, varying.texture_from_object).ok_or(AssemblyError::NotNormal("a varying bsdf has no parts"))
 }
 
+fn lower_color(color: &arsc_ir::ColorTexture) -> ColorTexture {
+    match color {
+        arsc_ir::ColorTexture::Rgb(rgb) => ColorTexture::Rgb(rgb.clone()),
+        arsc_ir::ColorTexture::Image { image, uv } => ColorTexture::Image { image: image.clone(), uv: uv.clone() },
+    }
+}
+
 fn lower_parameter(parameter: &arsc_ir::Parameter) -> Parameter {
     match parameter {
         arsc_ir::Parameter::Reflectance(texture) => {
-            let term = |term: &arsc_ir::SpectrumTerm| (term.weight.clone(), DenseSpectrum::new(&term.spectrum));
+            let term = |term: &arsc_ir::SpectrumTerm| SpectrumTerm {
+                weight: term.weight.clone(),
+                spectrum: DenseSpectrum::new(&term.spectrum),
+                color: term.color.as_ref().map(lower_color),
+            };
             Parameter::Reflectance(texture.terms.iter().map(term).collect())
         }
         arsc_ir::Parameter::Sigma(sigma) => Parameter::Sigma(sigma.clone()),

@@ -18,7 +18,7 @@ pub enum ImageError {
     NotSpectral(String),
     /// No format that is read here.
     #[error(
-        "not a picture of a kind that is read: spectral or RGB OpenEXR, PNG, TIFF, Radiance HDR, CSV of bands, ARTRAW"
+        "not a picture of a kind that is read: spectral or RGB OpenEXR, PNG, JPEG, TIFF, Radiance HDR, CSV of bands, ARTRAW"
     )]
     Unknown,
     /// Right in form, wrong in content.

@@ -4,8 +4,8 @@ use arsc_spectral::{Channels, Raster, srgb};
 use glam::DVec3;
 
 use crate::{
-    ColourImage, ImageError, SpectralImage, UNIT_LUMINANCE, art_raw, decode_csv, decode_exr_picture, decode_png,
-    decode_tiff, encode_colour_exr, encode_exr, radiance_hdr,
+    ColourImage, ImageError, SpectralImage, UNIT_LUMINANCE, art_raw, decode_csv, decode_exr_picture, decode_jpeg,
+    decode_png, decode_tiff, encode_colour_exr, encode_exr, radiance_hdr,
 };
 
 #[derive(Clone, Debug, PartialEq)]
@@ -15,10 +15,11 @@ pub enum Picture {
 }
 
 impl Picture {
-    /// Reads OpenEXR, PNG, TIFF, Radiance HDR, ARTRAW or CSV, whatever the file is called.
+    /// Reads OpenEXR, PNG, JPEG, TIFF, Radiance HDR, ARTRAW or CSV, whatever the file is called.
     pub fn decode(bytes: &[u8]) -> Result<Picture, ImageError> {
         match bytes {
             [0x76, 0x2F, 0x31, 0x01, ..] => decode_exr_picture(bytes),
+            [0xFF, 0xD8, 0xFF, ..] => decode_jpeg(bytes).map(Picture::Colour),
             [0x89, b'P', b'N', b'G', ..] => decode_png(bytes).map(Picture::Colour),
             [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => decode_tiff(bytes).map(Picture::Colour),
             [b'#', b'?', ..] => radiance_hdr::decode(bytes).map(Picture::Colour),

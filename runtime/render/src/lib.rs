@@ -40,5 +40,5 @@ pub use medium::{Density, Medium};
 pub use path_trace::{PathTraceSettings, Progress, path_trace};
 pub use phase::PhaseFunction;
 pub use sampler::Sampler;
-pub use varying::{Parameter, VaryingBsdf, VaryingPart};
+pub use varying::{ColorTexture, Parameter, SpectrumTerm, VaryingBsdf, VaryingPart};
 pub use world::{LightSource, Material, Media, World};

@@ -6,10 +6,11 @@
 //! mixture of smooth and rough parts. Nothing is allocated at a hit; spectra are taken at the path's wavelengths.
 
 use std::cell::RefCell;
+use std::sync::Arc;
 
 use arsc_accel::{Hit, Scene};
-use arsc_spectral::{DenseSpectrum, SampledSpectrum, SampledWavelengths};
-use arsc_texture::{Dual, Expression, ExpressionGraph, Inputs, Needs, Step, evaluate, evaluate_gradients};
+use arsc_spectral::{ColourBasis, DenseSpectrum, SampledSpectrum, SampledWavelengths};
+use arsc_texture::{Dual, Expression, ExpressionGraph, ImageMap, Inputs, Needs, Step, evaluate, evaluate_gradients};
 use glam::{DAffine3, DVec2, DVec3};
 
 use crate::bsdf::{Bsdf, BsdfParameters};
@@ -27,8 +28,8 @@ pub struct VaryingPart {
 /// A parameter of a bsdf that varies; values are limited to what the bsdf allows.
 #[derive(Clone, Debug)]
 pub enum Parameter {
-    /// The sum of weighted spectra.
-    Reflectance(Vec<(Expression, DenseSpectrum)>),
+    /// The sum of terms.
+    Reflectance(Vec<SpectrumTerm>),
     /// Of Oren and Nayar's model, radians.
     Sigma(Expression),
     /// Of the Phong lobe.
@@ -41,10 +42,40 @@ pub enum Parameter {
     Normal([Expression; 3]),
 }
 
+/// Weight times spectrum, times a colour that varies if there is one.
+#[derive(Clone, Debug)]
+pub struct SpectrumTerm {
+    pub weight: Expression,
+    pub spectrum: DenseSpectrum,
+    pub color: Option<ColorTexture>,
+}
+
+/// A reflectance of a colour that varies.
+#[derive(Clone, Debug)]
+pub enum ColorTexture {
+    /// Linear sRGB, limited to [0, 1].
+    Rgb([Expression; 3]),
+    /// A picture at surface coordinates.
+    Image { image: Arc<ImageMap>, uv: [Expression; 2] },
+}
+
+#[derive(Clone, Debug)]
+struct TermSlot {
+    weight: u32,
+    spectrum: DenseSpectrum,
+    color: Option<ColorSlot>,
+}
+
+#[derive(Clone, Debug)]
+enum ColorSlot {
+    Rgb([u32; 3]),
+    Image { image: Arc<ImageMap>, uv: [u32; 2] },
+}
+
 /// Positions of steps in place of expressions.
 #[derive(Clone, Debug)]
 enum Slot {
-    Reflectance(Vec<(u32, DenseSpectrum)>),
+    Reflectance(Vec<TermSlot>),
     Sigma(u32),
     Exponent(u32),
     Roughness([u32; 2]),
@@ -70,6 +101,7 @@ enum Relief {
 #[derive(Clone, Debug)]
 pub struct VaryingBsdf {
     steps: Vec<Step>,
+    images: Vec<Arc<ImageMap>>,
     needs: Needs,
     parts: Vec<Part>,
     texture_from_object: DAffine3,
@@ -94,7 +126,17 @@ impl VaryingBsdf {
             for parameter in part.parameters {
                 slots.push(match parameter {
                     Parameter::Reflectance(terms) => {
-                        Slot::Reflectance(terms.into_iter().map(|(weight, s)| (put(&weight), s)).collect())
+                        let term = |term: SpectrumTerm| TermSlot {
+                            weight: put(&term.weight),
+                            spectrum: term.spectrum,
+                            color: term.color.map(|color| match color {
+                                ColorTexture::Rgb(rgb) => ColorSlot::Rgb(rgb.map(|c| put(&c))),
+                                ColorTexture::Image { image, uv } => {
+                                    ColorSlot::Image { image, uv: uv.map(|c| put(&c)) }
+                                }
+                            }),
+                        };
+                        Slot::Reflectance(terms.into_iter().map(term).collect())
                     }
                     Parameter::Sigma(sigma) => Slot::Sigma(put(&sigma)),
                     Parameter::Exponent(exponent) => Slot::Exponent(put(&exponent)),
@@ -111,10 +153,10 @@ impl VaryingBsdf {
             }
             compiled.push(Part { weight, bsdf: part.bsdf, slots, relief });
         }
-        let steps = graph.steps().to_vec();
+        let (steps, images) = (graph.steps().to_vec(), graph.images().to_vec());
         let mut needs = Needs::of(&steps);
         needs.local |= compiled.iter().any(|part| matches!(part.relief, Relief::Height(_)));
-        (!compiled.is_empty()).then_some(VaryingBsdf { steps, needs, parts: compiled, texture_from_object })
+        (!compiled.is_empty()).then_some(VaryingBsdf { steps, images, needs, parts: compiled, texture_from_object })
     }
 
     /// The part that answers for all when a question has no place: an interface if there is one, else the first that does
@@ -140,7 +182,7 @@ impl VaryingBsdf {
     ) -> &'a Bsdf {
         let inputs = self.inputs(geometry, hit);
         VALUES.with_borrow_mut(|values| {
-            evaluate(&self.steps, &inputs, values);
+            evaluate(&self.steps, &self.images, &inputs, values);
             let part = self.choose(values, u);
             let ns = match part.relief {
                 Relief::None => hit.ns,
@@ -184,7 +226,7 @@ impl VaryingBsdf {
             Inputs { p: tangent, world_p, uv, ..Inputs::default() }
         });
         let slope = DUALS.with_borrow_mut(|values| {
-            evaluate_gradients(&self.steps[..=height as usize], inputs, &along, values);
+            evaluate_gradients(&self.steps[..=height as usize], &self.images, inputs, &along, values);
             values.last().map_or(DVec2::ZERO, |value| value.1)
         });
         let raised = inputs.normal - frame.x * slope.x - frame.y * slope.y;
@@ -243,12 +285,23 @@ impl Part {
 }
 
 /// The sum of weighted spectra, limited to [0, 1].
-fn blend(terms: &[(u32, DenseSpectrum)], values: &[f64], wavelengths: &SampledWavelengths) -> SampledSpectrum {
+fn blend(terms: &[TermSlot], values: &[f64], wavelengths: &SampledWavelengths) -> SampledSpectrum {
     let mut sum = SampledSpectrum::ZERO;
-    for (weight, spectrum) in terms {
-        let weight = values[*weight as usize] as f32;
+    let at = |step: u32| values[step as usize];
+    for term in terms {
+        let weight = at(term.weight) as f32;
         if weight != 0.0 {
-            sum += spectrum.sample(wavelengths) * weight;
+            let spectrum = term.spectrum.sample(wavelengths) * weight;
+            sum += match &term.color {
+                None => spectrum,
+                Some(ColorSlot::Rgb(rgb)) => {
+                    let rgb = rgb.map(|c| at(c).clamp(0.0, 1.0) as f32);
+                    spectrum * ColourBasis::reflectance().sample(rgb, wavelengths)
+                }
+                Some(ColorSlot::Image { image, uv: [u, v] }) => {
+                    spectrum * image.reflectance(DVec2::new(at(*u), at(*v)), wavelengths)
+                }
+            };
         }
     }
     // Opposite infinities of single precision leave no number: black.

@@ -1,7 +1,10 @@
 //! An expression: operations on numbers in an order in which they can be carried out.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
+use crate::image::ImageMap;
 use crate::noise::{MAX_OCTAVES, Noise};
 use crate::operation::{Binary, Input, Unary};
 
@@ -15,6 +18,12 @@ pub enum Step {
     /// The second operand where the first is not 0, else the third.
     Select(u32, u32, u32),
     Noise(Noise, [u32; 3]),
+    /// A component, 0 to 2, of one of the expression's pictures at surface coordinates.
+    Image {
+        image: u32,
+        channel: u8,
+        uv: [u32; 2],
+    },
 }
 
 impl Step {
@@ -26,12 +35,13 @@ impl Step {
             Step::Binary(_, a, b) => [a, b].into_iter().for_each(f),
             Step::Select(a, b, c) => [a, b, c].into_iter().for_each(f),
             Step::Noise(_, p) => p.iter_mut().for_each(f),
+            Step::Image { uv, .. } => uv.iter_mut().for_each(f),
         }
     }
 
     /// The value; `of` gives those of operands.
     #[inline]
-    pub(crate) fn value(&self, inputs: &Inputs, of: impl Fn(u32) -> f64) -> f64 {
+    pub(crate) fn value(&self, images: &[Arc<ImageMap>], inputs: &Inputs, of: impl Fn(u32) -> f64) -> f64 {
         match *self {
             Step::Constant(value) => value,
             Step::Input(input) => inputs.get(input),
@@ -39,6 +49,9 @@ impl Step {
             Step::Binary(op, a, b) => op.apply(of(a), of(b)),
             Step::Select(condition, a, b) => of(if of(condition) != 0.0 { a } else { b }),
             Step::Noise(noise, [x, y, z]) => noise.at(DVec3::new(of(x), of(y), of(z))),
+            Step::Image { image, channel, uv: [u, v] } => {
+                images[image as usize].channel(DVec2::new(of(u), of(v)), channel.into())
+            }
         }
     }
 }
@@ -116,6 +129,8 @@ pub enum ExpressionError {
     NotFinite,
     /// More than [`MAX_OCTAVES`].
     Octaves,
+    /// There is no such picture or component.
+    Image,
 }
 
 impl std::fmt::Display for ExpressionError {
@@ -125,6 +140,7 @@ impl std::fmt::Display for ExpressionError {
             ExpressionError::Operand => "an operand does not stand before its step",
             ExpressionError::NotFinite => "a number of an expression is not finite",
             ExpressionError::Octaves => "a noise has too many octaves",
+            ExpressionError::Image => "an expression has no such picture",
         })
     }
 }
@@ -135,10 +151,17 @@ impl std::error::Error for ExpressionError {}
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     steps: Box<[Step]>,
+    images: Box<[Arc<ImageMap>]>,
 }
 
 impl Expression {
+    /// Of steps without pictures.
     pub fn new(steps: Vec<Step>) -> Result<Expression, ExpressionError> {
+        Expression::with_images(steps, Vec::new())
+    }
+
+    /// Of steps that name these pictures.
+    pub fn with_images(steps: Vec<Step>, images: Vec<Arc<ImageMap>>) -> Result<Expression, ExpressionError> {
         if steps.is_empty() {
             return Err(ExpressionError::Empty);
         }
@@ -149,6 +172,9 @@ impl Expression {
                 return Err(ExpressionError::Operand);
             }
             match *step {
+                Step::Image { image, channel, .. } if image as usize >= images.len() || channel > 2 => {
+                    return Err(ExpressionError::Image);
+                }
                 Step::Constant(value) if !value.is_finite() => return Err(ExpressionError::NotFinite),
                 Step::Noise(Noise::Fbm { octaves, lacunarity, gain, .. }, _)
                 | Step::Noise(Noise::Turbulence { octaves, lacunarity, gain, .. }, _) => {
@@ -162,15 +188,20 @@ impl Expression {
                 _ => {}
             }
         }
-        Ok(Expression { steps: steps.into() })
+        Ok(Expression { steps: steps.into(), images: images.into() })
     }
 
     pub fn constant(value: f64) -> Expression {
-        Expression { steps: Box::new([Step::Constant(if value.is_finite() { value } else { 0.0 })]) }
+        let steps = Box::new([Step::Constant(if value.is_finite() { value } else { 0.0 })]);
+        Expression { steps, images: Box::default() }
     }
 
     pub fn steps(&self) -> &[Step] {
         &self.steps
+    }
+
+    pub fn images(&self) -> &[Arc<ImageMap>] {
+        &self.images
     }
 
     /// The value, if it is the same everywhere.
@@ -187,17 +218,17 @@ impl Expression {
 
     /// The value at a point. `scratch` is overwritten; kept, it saves its allocation.
     pub fn evaluate(&self, inputs: &Inputs, scratch: &mut Vec<f64>) -> f64 {
-        evaluate(&self.steps, inputs, scratch);
+        evaluate(&self.steps, &self.images, inputs, scratch);
         scratch.last().copied().unwrap_or(0.0)
     }
 }
 
 /// The values of all steps, in `values`; operands must stand before their step.
 #[inline]
-pub fn evaluate(steps: &[Step], inputs: &Inputs, values: &mut Vec<f64>) {
+pub fn evaluate(steps: &[Step], images: &[Arc<ImageMap>], inputs: &Inputs, values: &mut Vec<f64>) {
     values.clear();
     for step in steps {
-        let value = step.value(inputs, |operand| values[operand as usize]);
+        let value = step.value(images, inputs, |operand| values[operand as usize]);
         values.push(value);
     }
 }

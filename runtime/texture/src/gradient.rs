@@ -1,9 +1,12 @@
 //! Derivatives of expressions along two directions of the surface, exact, by carrying them through every step (forward
 //! differentiation). Where a step has none (jumps, corners) it counts as 0, or as that of one side.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use crate::expression::{Inputs, Step};
+use crate::image::ImageMap;
 use crate::noise::Noise;
 use crate::operation::{Binary, Unary};
 
@@ -12,10 +15,16 @@ pub type Dual = (f64, DVec2);
 
 /// The values of all steps with their derivatives; `along` holds the derivatives of the inputs. Operands must stand
 /// before their step.
-pub fn evaluate_gradients(steps: &[Step], inputs: &Inputs, along: &[Inputs; 2], values: &mut Vec<Dual>) {
+pub fn evaluate_gradients(
+    steps: &[Step],
+    images: &[Arc<ImageMap>],
+    inputs: &Inputs,
+    along: &[Inputs; 2],
+    values: &mut Vec<Dual>,
+) {
     values.clear();
     for step in steps {
-        let value = step.value(inputs, |operand| values[operand as usize].0);
+        let value = step.value(images, inputs, |operand| values[operand as usize].0);
         let of = |operand: u32| values[operand as usize];
         let slope = match *step {
             Step::Constant(_) => DVec2::ZERO,
@@ -29,6 +38,11 @@ pub fn evaluate_gradients(steps: &[Step], inputs: &Inputs, along: &[Inputs; 2], 
             Step::Noise(noise, [x, y, z]) => {
                 let gradient = noise.gradient(DVec3::new(of(x).0, of(y).0, of(z).0));
                 of(x).1 * gradient.x + of(y).1 * gradient.y + of(z).1 * gradient.z
+            }
+            Step::Image { image, channel, uv: [u, v] } => {
+                let place = DVec2::new(of(u).0, of(v).0);
+                let slope = images[image as usize].channel_slope(place, channel.into());
+                of(u).1 * slope.x + of(v).1 * slope.y
             }
         };
         values.push((value, if slope.is_finite() { slope } else { DVec2::ZERO }));
@@ -127,7 +141,7 @@ mod tests {
         let directions = [DVec3::new(0.6, 0.0, 0.8), DVec3::new(-0.8, 0.3, 0.5)];
         let of = |p: DVec3| Inputs { p, ..Inputs::default() };
         let mut values = Vec::new();
-        evaluate_gradients(expression.steps(), &of(at), &directions.map(of), &mut values);
+        evaluate_gradients(expression.steps(), &[], &of(at), &directions.map(of), &mut values);
         let (value, slopes) = *values.last().unwrap();
         let plain = |p: DVec3| expression.evaluate(&of(p), &mut Vec::new());
         assert_eq!(value, plain(at), "{what}");

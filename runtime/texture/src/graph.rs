@@ -4,10 +4,12 @@
 //! constant or on equal operands give an operand; x · 0 gives 0, for no value is infinite.
 
 use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
 use crate::expression::{Expression, Inputs, Step};
+use crate::image::ImageMap;
 use crate::noise::Noise;
 use crate::operation::{Binary, Unary};
 
@@ -20,6 +22,7 @@ pub struct StepId(pub u32);
 pub struct ExpressionGraph {
     steps: Vec<Step>,
     known: FxHashMap<Key, u32>,
+    images: Vec<Arc<ImageMap>>,
 }
 
 impl ExpressionGraph {
@@ -29,6 +32,21 @@ impl ExpressionGraph {
 
     pub fn is_empty(&self) -> bool {
         self.steps.is_empty()
+    }
+
+    /// The pictures that steps name.
+    pub fn images(&self) -> &[Arc<ImageMap>] {
+        &self.images
+    }
+
+    /// A component, 0 to 2, of a picture at surface coordinates.
+    pub fn image(&mut self, image: &Arc<ImageMap>, channel: u8, uv: [StepId; 2]) -> StepId {
+        let known = self.images.iter().position(|known| known == image);
+        let index = known.unwrap_or_else(|| {
+            self.images.push(image.clone());
+            self.images.len() - 1
+        });
+        self.add(Step::Image { image: index as u32, channel, uv: uv.map(|id| id.0) })
     }
 
     /// All steps; operands stand before their step.
@@ -84,7 +102,12 @@ impl ExpressionGraph {
         for step in expression.steps() {
             let mut step = *step;
             step.for_each_operand(|operand| *operand = ids[*operand as usize]);
-            ids.push(self.add(step).0);
+            ids.push(match step {
+                Step::Image { image, channel, uv } => {
+                    self.image(&expression.images()[image as usize], channel, uv.map(StepId)).0
+                }
+                _ => self.add(step).0,
+            });
         }
         StepId(ids.last().copied().unwrap_or(0))
     }
@@ -100,14 +123,20 @@ impl ExpressionGraph {
             }
         }
         let mut position = vec![0; needed.len()];
-        let mut steps = Vec::new();
+        let (mut steps, mut images) = (Vec::new(), Vec::<Arc<ImageMap>>::new());
         for i in (0..needed.len()).filter(|i| needed[*i]) {
             let mut step = self.steps[i];
             step.for_each_operand(|operand| *operand = position[*operand as usize]);
+            if let Step::Image { image, .. } = &mut step {
+                let map = &self.images[*image as usize];
+                let known = images.iter().position(|known| known == map);
+                *image = known.unwrap_or(images.len()) as u32;
+                images.extend(known.is_none().then(|| map.clone()));
+            }
             position[i] = steps.len() as u32;
             steps.push(step);
         }
-        Expression::new(steps).expect("a graph holds sound steps")
+        Expression::with_images(steps, images).expect("a graph holds sound steps")
     }
 
     fn mark_operands(&self, i: usize, needed: &mut [bool]) {
@@ -138,7 +167,7 @@ impl ExpressionGraph {
         let mut constant = !matches!(step, Step::Input(_));
         step.for_each_operand(|operand| constant &= self.as_constant(StepId(*operand)).is_some());
         let of = |operand: u32| self.as_constant(StepId(operand)).unwrap_or(0.0);
-        constant.then(|| step.value(&Inputs::default(), of))
+        constant.then(|| step.value(&self.images, &Inputs::default(), of))
     }
 
     fn push(&mut self, step: Step) -> StepId {
@@ -166,6 +195,7 @@ impl Hash for Key {
             Step::Unary(op, a) => (op, a).hash(hasher),
             Step::Binary(op, a, b) => (op, a, b).hash(hasher),
             Step::Select(a, b, c) => (a, b, c).hash(hasher),
+            Step::Image { image, channel, uv } => (image, channel, uv).hash(hasher),
             Step::Noise(noise, p) => {
                 p.hash(hasher);
                 match noise {

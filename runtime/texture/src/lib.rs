@@ -10,11 +10,13 @@
 mod expression;
 mod gradient;
 mod graph;
+mod image;
 mod noise;
 mod operation;
 
 pub use expression::{Expression, ExpressionError, Inputs, Needs, Step, evaluate};
 pub use gradient::{Dual, evaluate_gradients};
 pub use graph::{ExpressionGraph, StepId};
+pub use image::ImageMap;
 pub use noise::{MAX_OCTAVES, Noise, PERLIN_BOUND, perlin};
 pub use operation::{Binary, Input, Unary};

@@ -324,17 +324,20 @@ fn what_varies_reads_back() {
     steps.push("noise(0, 1, 2, seed: 4294967295)".into());
     steps.push("fbm(0, 1, 2, seed: 1, octaves: 6, lacunarity: 2.0, gain: 0.5)".into());
     steps.push("turbulence(0, 1, 2, seed: 1, octaves: 6, lacunarity: 2.0, gain: 0.5)".into());
+    let laid = "path: \"a.png\", repeat: true, smooth: false, data: false";
+    steps.push(format!("image(6, 7, channel: 2, {laid})"));
     let long = format!("expression({})", steps.join(", "));
     let rough = "rough_conductor(eta: constant(0.2), k: constant(3.0), distribution: ggx, alpha: [0.1, 0.1])";
     let text = format!(
         "ir 1\nbsdf b0 = varying(part(oren_nayar(reflectance: constant(0.5), sigma: 0.0), weight: {long}, reflectance: \
-         blend(term(expression(u), constant(1.0)), term({long}, constant(0.5))), sigma: expression(v)), \
+         blend(term(expression(u), constant(1.0)), term({long}, constant(0.5), color: rgb(expression(u), expression(v), \
+         expression(1.0))), term(expression(1.0), constant(1.0), color: image(expression(u), expression(v), {laid}))), sigma: expression(v)), \
          part(phong(reflectance: constant(0.5), exponent: 1.0), weight: expression(1.0), exponent: expression(u), height: expression(v), normal: \
          normal(expression(u), expression(v), expression(1.0))), \
          part({rough}, weight: expression(1.0), roughness: expression(u), across: expression(v)), \
          at: [1.0, 2.0, 3.0])\n%0 = sphere(radius: 1.0) @0:0..1\nroot %0\n"
     );
-    let ir = read(&text).unwrap_or_else(|error| panic!("{error}"));
+    let ir = read_with(&text, &Files).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(ir.to_string(), text);
     assert_eq!(verify(&ir), Ok(()));
     let broken = [
@@ -346,10 +349,10 @@ fn what_varies_reads_back() {
         ("weight: expression(1.0), exponent", "exponent", "`part` lacks `weight`"),
     ];
     for (from, to, wanted) in broken {
-        let error = read(&text.replacen(from, to, 1)).expect_err(to);
+        let error = read_with(&text.replacen(from, to, 1), &Files).expect_err(to);
         assert!(error.message.contains(wanted), "{to}: {error}");
     }
     let wrong = text.replacen("sigma: expression(v)", "exponent: expression(v)", 1);
-    let found = verify(&read(&wrong).unwrap()).unwrap_err();
+    let found = verify(&read_with(&wrong, &Files).unwrap()).unwrap_err();
     assert_eq!(found[0].message, "a bsdf has no such parameter");
 }

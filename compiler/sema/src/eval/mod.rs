@@ -33,7 +33,7 @@ use crate::{Assets, Limits};
 pub use call::default_value;
 pub use operator::{add_values, finite, scale_value};
 pub use tables::Table;
-pub use texture::{Texture, is_varying};
+pub use texture::{Color, Texture, is_varying};
 
 /// A value, or what went wrong.
 pub type Eval<T = Value> = Result<T, Box<Diagnostic>>;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Diagnostic, Span};
-use arsc_ir::{Expression, Parameter, Spectrum, SpectrumTerm, SpectrumTexture};
+use arsc_ir::{ColorTexture, Expression, ImageMap, Parameter, Spectrum, SpectrumTerm, SpectrumTexture};
 use arsc_syntax::ast::BinaryOp;
 use arsc_texture::{Binary, Inputs, Step, StepId, Unary};
 use glam::{DVec2, DVec3};
@@ -28,7 +28,26 @@ pub enum Texture {
     /// Two or three components.
     Vector(Vec<StepId>),
     /// The sum of weighted spectra.
-    Spectrum(Vec<(StepId, Arc<Spectrum>)>),
+    Spectrum(Vec<Term>),
+}
+
+/// A spectrum of a texture: weight times spectrum times colour.
+#[derive(Clone, Debug)]
+pub struct Term {
+    pub weight: StepId,
+    pub spectrum: Arc<Spectrum>,
+    pub color: Option<Color>,
+}
+
+/// A colour that varies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Color {
+    /// Linear sRGB.
+    Rgb([StepId; 3]),
+    Image {
+        image: Arc<ImageMap>,
+        uv: [StepId; 2],
+    },
 }
 
 impl Machine<'_> {
@@ -61,12 +80,12 @@ impl Machine<'_> {
         }
     }
 
-    fn terms(&mut self, value: &Value) -> Vec<(StepId, Arc<Spectrum>)> {
+    fn terms(&mut self, value: &Value) -> Vec<Term> {
         if let Value::Texture(texture) = value {
             return match &**texture {
                 Texture::Spectrum(terms) => terms.clone(),
                 // Greys.
-                Texture::Scalar(weight) => vec![(*weight, Arc::new(Spectrum::Constant(1.0)))],
+                Texture::Scalar(weight) => vec![Term { weight: *weight, spectrum: white(), color: None }],
                 Texture::Vector(_) => panic!("the checker let pass a vector where a spectrum is needed"),
             };
         }
@@ -76,26 +95,24 @@ impl Machine<'_> {
         };
         let mut terms = Vec::new();
         let one = self.expressions.constant(1.0);
-        self.add_term(&mut terms, one, &spectrum);
+        self.add_term(&mut terms, Term { weight: one, spectrum, color: None });
         terms
     }
 
     /// Greys are one spectrum.
-    fn add_term(&mut self, terms: &mut Vec<(StepId, Arc<Spectrum>)>, weight: StepId, spectrum: &Arc<Spectrum>) {
-        let (weight, spectrum) = match **spectrum {
-            Spectrum::Constant(value) => {
-                let value = self.expressions.constant(value);
-                (self.step_of(Binary::Multiply, weight, value), Arc::new(Spectrum::Constant(1.0)))
-            }
-            _ => (weight, spectrum.clone()),
+    fn add_term(&mut self, terms: &mut Vec<Term>, mut term: Term) {
+        if let Spectrum::Constant(value) = *term.spectrum {
+            let value = self.expressions.constant(value);
+            term.weight = self.step_of(Binary::Multiply, term.weight, value);
+            term.spectrum = white();
+        }
+        let is_same = |known: &Term| {
+            let greys = matches!((&*known.spectrum, &*term.spectrum), (Spectrum::Constant(_), Spectrum::Constant(_)));
+            (greys || Arc::ptr_eq(&known.spectrum, &term.spectrum)) && known.color == term.color
         };
-        let is_same = |known: &Spectrum| match (known, &*spectrum) {
-            (Spectrum::Constant(a), Spectrum::Constant(b)) => a == b,
-            _ => false,
-        };
-        match terms.iter_mut().find(|(_, known)| Arc::ptr_eq(known, &spectrum) || is_same(known)) {
-            Some((sum, _)) => *sum = self.expressions.binary(Binary::Add, *sum, weight),
-            None => terms.push((weight, spectrum)),
+        match terms.iter_mut().find(|known| is_same(known)) {
+            Some(known) => known.weight = self.expressions.binary(Binary::Add, known.weight, term.weight),
+            None => terms.push(term),
         }
     }
 
@@ -116,11 +133,11 @@ impl Machine<'_> {
         }
     }
 
-    fn spectrum_value(&self, terms: Vec<(StepId, Arc<Spectrum>)>, span: Span) -> Eval {
+    fn spectrum_value(&self, terms: Vec<Term>, span: Span) -> Eval {
         if terms.len() > MAX_TERMS {
             return Err(limit(span, "spectra in one texture", MAX_TERMS as u64, "blend fewer spectra"));
         }
-        if let [(weight, spectrum)] = &terms[..]
+        if let [Term { weight, spectrum, color: None }] = &terms[..]
             && let Some(weight) = self.expressions.as_constant(*weight)
         {
             return super::scale_value(&Value::Spectrum(spectrum.clone()), weight, span);
@@ -206,17 +223,26 @@ impl Machine<'_> {
         match op {
             BinaryOp::Add => {
                 result = self.terms(a);
-                for (weight, spectrum) in self.terms(b) {
-                    self.add_term(&mut result, weight, &spectrum);
+                for term in self.terms(b) {
+                    self.add_term(&mut result, term);
                 }
             }
             BinaryOp::Mul if is_spectrum(a) && is_spectrum(b) => {
                 let (a, b) = (self.terms(a), self.terms(b));
                 self.spend_elements(a.len() * b.len(), span)?;
-                for (wa, sa) in &a {
-                    for (wb, sb) in &b {
-                        let weight = self.step_of(Binary::Multiply, *wa, *wb);
-                        self.add_term(&mut result, weight, &product(sa, sb));
+                for a in &a {
+                    for b in &b {
+                        let weight = self.step_of(Binary::Multiply, a.weight, b.weight);
+                        if a.color.is_some() && b.color.is_some() {
+                            let message = "two colours that vary cannot be multiplied";
+                            let failure = Diagnostic::new(codes::OPERANDS, message).label(span, "here");
+                            return Err(Box::new(
+                                failure.help("multiply their components, and make one colour by `rgb`"),
+                            ));
+                        }
+                        let color = a.color.clone().or(b.color.clone());
+                        let spectrum = product(&a.spectrum, &b.spectrum);
+                        self.add_term(&mut result, Term { weight, spectrum, color });
                     }
                 }
             }
@@ -224,8 +250,8 @@ impl Machine<'_> {
                 let (spectrum, factor) = if is_spectrum(a) { (a, b) } else { (b, a) };
                 let factor = self.scalar(factor);
                 let op = if op == BinaryOp::Div { Binary::Divide } else { Binary::Multiply };
-                for (weight, spectrum) in self.terms(spectrum) {
-                    result.push((self.step_of(op, weight, factor), spectrum));
+                for term in self.terms(spectrum) {
+                    result.push(Term { weight: self.step_of(op, term.weight, factor), ..term });
                 }
             }
         }
@@ -268,9 +294,9 @@ impl Machine<'_> {
     fn weighted_sum(&mut self, wa: StepId, a: &Value, wb: StepId, b: &Value, span: Span) -> Eval {
         let mut result = Vec::new();
         for (factor, value) in [(wa, a), (wb, b)] {
-            for (weight, spectrum) in self.terms(value) {
-                let weight = self.step_of(Binary::Multiply, weight, factor);
-                self.add_term(&mut result, weight, &spectrum);
+            for term in self.terms(value) {
+                let weight = self.step_of(Binary::Multiply, term.weight, factor);
+                self.add_term(&mut result, Term { weight, ..term });
             }
         }
         self.spend_elements(result.len(), span)?;
@@ -323,10 +349,26 @@ impl Machine<'_> {
 
     fn spectrum_texture(&mut self, value: &Value, span: Span) -> Eval<SpectrumTexture> {
         let mut terms = Vec::new();
-        for (weight, spectrum) in self.terms(value) {
-            terms.push(SpectrumTerm { weight: self.expression(weight, span)?, spectrum: spectrum.as_ref().clone() });
+        for Term { weight, spectrum, color } in self.terms(value) {
+            let weight = self.expression(weight, span)?;
+            let color = color.map(|color| self.color(&color, span)).transpose()?;
+            terms.push(SpectrumTerm { weight, spectrum: spectrum.as_ref().clone(), color });
         }
         Ok(SpectrumTexture { terms })
+    }
+
+    fn color(&self, color: &Color, span: Span) -> Eval<ColorTexture> {
+        let of = |id: StepId| self.expression(id, span);
+        Ok(match color {
+            Color::Rgb([r, g, b]) => ColorTexture::Rgb([of(*r)?, of(*g)?, of(*b)?]),
+            Color::Image { image, uv: [u, v] } => ColorTexture::Image { image: image.clone(), uv: [of(*u)?, of(*v)?] },
+        })
+    }
+
+    /// A reflectance of a colour that varies.
+    pub fn color_value(&mut self, color: Color) -> Value {
+        let weight = self.expressions.constant(1.0);
+        Value::Texture(Arc::new(Texture::Spectrum(vec![Term { weight, spectrum: white(), color: Some(color) }])))
     }
 
     /// Looks for a place where a reflectance leaves [0, 1]: at points of a cube of 4 m about the origin.
@@ -342,7 +384,7 @@ impl Machine<'_> {
             let inputs = place(i);
             let mut sum = [0.0; 7];
             for (term, values) in texture.terms.iter().zip(&spectra) {
-                let weight = term.weight.evaluate(&inputs, &mut scratch);
+                let weight = term.weight.evaluate(&inputs, &mut scratch) * brightness(term, &inputs, &mut scratch);
                 sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
             }
             low = sum.iter().fold(low, |a, b| a.min(*b));
@@ -362,6 +404,22 @@ impl Machine<'_> {
                 .label(site.args[arg], format!("reaches {reached}"))
                 .help("keep it within 0 and 1: noise goes from -1 to 1, `clamp(x, 0, 1)` limits"),
         );
+    }
+}
+
+fn white() -> Arc<Spectrum> {
+    Arc::new(Spectrum::Constant(1.0))
+}
+
+/// The largest component of a term's colour.
+fn brightness(term: &SpectrumTerm, inputs: &Inputs, scratch: &mut Vec<f64>) -> f64 {
+    match &term.color {
+        None => 1.0,
+        Some(ColorTexture::Rgb(rgb)) => rgb.iter().map(|c| c.evaluate(inputs, scratch)).fold(0.0, f64::max),
+        Some(ColorTexture::Image { image, uv: [u, v] }) => {
+            let uv = DVec2::new(u.evaluate(inputs, scratch), v.evaluate(inputs, scratch));
+            (0..3).map(|channel| image.channel(uv, channel)).fold(0.0, f64::max)
+        }
     }
 }
 

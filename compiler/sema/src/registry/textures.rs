@@ -1,11 +1,14 @@
 //! Values that vary over a surface: where they come from, and what the functions on numbers and vectors do with them.
 
+use std::sync::Arc;
+
 use arsc_diagnostics::codes::sema as codes;
+use arsc_ir::ImageMap;
 use arsc_texture::{Binary, Input, MAX_OCTAVES, Noise, Step, StepId, Unary};
 
 use super::{Builtin, Param, TEXTURE_OVERLOADS};
 use crate::code::Site;
-use crate::eval::{Eval, Machine, Texture};
+use crate::eval::{Color, Eval, Machine, Texture};
 use crate::types::Class;
 use crate::types::TextureKind::{self, Angle, Float, Vec2, Vec3};
 use crate::types::Type::{self, Bool, Int, Texture as Of, Var};
@@ -16,6 +19,7 @@ const TEXTURE: &str = "std.texture";
 pub fn builtins() -> Vec<Builtin> {
     let mut list = sources();
     list.extend(noises());
+    list.extend(images());
     list.push(
         Builtin::new("select", "`then` where the condition holds, else `otherwise`: an `if` for what varies.")
             .module(TEXTURE)
@@ -54,6 +58,60 @@ fn sources() -> Vec<Builtin> {
         of("surface_uv", "The surface coordinates of the shape or the mesh; `uv` is it.")
             .runs(Of(Vec2), |m, _, _| Ok(Texture::inputs(m, &[Input::U, Input::V]))),
     ]
+}
+
+fn images() -> Vec<Builtin> {
+    let of = |name, doc| {
+        Builtin::new(name, doc)
+            .module(TEXTURE)
+            .param(Param::new(
+                "path",
+                Type::Str,
+                "PNG, JPEG, TIFF, EXR (spectral or not) or HDR file, relative to the script",
+            ))
+            .param(
+                Param::new(
+                    "at",
+                    Of(Vec2),
+                    "surface coordinates, the picture filling (0, 0) to (1, 1); `uv` by default",
+                )
+                .optional(),
+            )
+            .param(
+                Param::new("repeat", Bool, "the picture goes on again and again; otherwise its border goes on")
+                    .bool(true),
+            )
+            .param(
+                Param::new("smooth", Bool, "linear between pixels; otherwise each pixel is of one colour").bool(true),
+            )
+    };
+    vec![
+        of("image", "A picture as reflectance: that of each colour, or the spectra of a spectral picture.").runs(
+            super::materials::varying_reflectance(),
+            |m, args, site| {
+                let (image, uv) = image_of(m, args, false, site)?;
+                Ok(m.color_value(Color::Image { image, uv }))
+            },
+        ),
+        of(
+            "image_data",
+            "A picture as numbers: red, green and blue from 0 to 1 as the file has them, without the transfer function \
+            of colours. For roughness, heights, normals.",
+        )
+        .runs(Of(Vec3), |m, args, site| {
+            let (image, uv) = image_of(m, args, true, site)?;
+            let channels = [0, 1, 2].map(|channel| m.expressions.image(&image, channel, uv));
+            Ok(m.vector_value(channels.to_vec()))
+        }),
+    ]
+}
+
+fn image_of(m: &mut Machine<'_>, args: &[Value], data: bool, site: &Site) -> Eval<(Arc<ImageMap>, [StepId; 2])> {
+    let (path, raster) = m.picture(args[0].as_str(), site)?;
+    let at = if args[1].is_given() { args[1].clone() } else { Texture::inputs(m, &[Input::U, Input::V]) };
+    let uv = m.components(&at);
+    let image = ImageMap::new(path, raster, args[2].as_bool(), args[3].as_bool(), data);
+    Ok((Arc::new(image), [uv[0], uv[1]]))
 }
 
 fn noises() -> Vec<Builtin> {
@@ -115,6 +173,14 @@ pub fn overloads() -> Vec<Builtin> {
     let of_vector = |name, doc| of(name, doc).var(Class::TexturedVector).param(Param::new("v", Var(0), "vector"));
     let number = |name| Param::new(name, Of(Float), "number");
     let mut list = vec![
+        of("rgb", "A reflectance of a linear sRGB colour that varies; components limited to [0, 1].")
+            .param(number("r"))
+            .param(number("g"))
+            .param(number("b"))
+            .runs(super::materials::varying_reflectance(), |m, a, _| {
+                let rgb = [m.scalar(&a[0]), m.scalar(&a[1]), m.scalar(&a[2])];
+                Ok(m.color_value(Color::Rgb(rgb)))
+            }),
         on("sqrt", "Square root; 0 for what is negative.", Float)
             .runs(Of(Float), |m, a, _| Ok(m.texture_map(Unary::Sqrt, &a[0]))),
         on("exp", "e to the power of x.", Float).runs(Of(Float), |m, a, _| Ok(m.texture_map(Unary::Exp, &a[0]))),
