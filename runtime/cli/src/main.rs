@@ -6,7 +6,6 @@
 
 mod args;
 mod bench;
-mod bench_rays;
 mod bug;
 mod check;
 mod compile;

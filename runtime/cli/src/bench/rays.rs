@@ -5,7 +5,8 @@ use std::path::Path;
 use arsc_assembly::{RayMeasurement, Sight, measure_rays};
 use serde::Serialize;
 
-use crate::bench::{Args, Format, print_table};
+use super::Args;
+use super::processor::thread_seconds;
 use crate::bug;
 use crate::compile::compile;
 use crate::exit::Exit;
@@ -39,21 +40,7 @@ pub fn run(args: &Args) -> Exit {
         eprintln!("error: --sights takes one script");
         return Exit::CouldNotRun;
     }
-    let mut lines = Vec::new();
-    for scene in &args.scenes {
-        match measure(scene, args) {
-            Ok(line) => lines.push(line),
-            Err(exit) => return exit,
-        }
-    }
-    match args.format {
-        Format::Table => table(&lines),
-        Format::Json => match serde_json::to_string_pretty(&lines) {
-            Ok(text) => println!("{text}"),
-            Err(error) => return failure(&error),
-        },
-    }
-    Exit::Clean
+    args.each(measure, rows)
 }
 
 fn measure(scene: &Path, args: &Args) -> Result<Line, Exit> {
@@ -84,12 +71,6 @@ fn measure(scene: &Path, args: &Args) -> Result<Line, Exit> {
     })
 }
 
-/// Processor time of this thread.
-fn thread_seconds() -> f64 {
-    let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-    now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64
-}
-
 /// Binary PGM: 0 nothing, 128 dark, 255 lit.
 fn grey_map(measured: &RayMeasurement) -> Vec<u8> {
     let [width, height] = measured.resolution;
@@ -102,11 +83,10 @@ fn grey_map(measured: &RayMeasurement) -> Vec<u8> {
     bytes
 }
 
-fn table(lines: &[Line]) {
+fn rows(lines: &[Line]) -> Vec<Vec<String>> {
     let header = ["scene", "csg", "primitives", "cells", "memory", "build", "hits", "shadow rays", "lit", "tests/ray"];
     let header: Vec<String> = header.into_iter().chain(["CPU s", "rays/CPU-s"]).map(str::to_owned).collect();
-    let mut rows = vec![header];
-    rows.extend(lines.iter().map(|line| {
+    let cells = |line: &Line| {
         let best = line.trace_seconds.iter().copied().fold(f64::INFINITY, f64::min);
         vec![
             line.scene.clone(),
@@ -122,6 +102,6 @@ fn table(lines: &[Line]) {
             short(best),
             count(line.rays_per_second),
         ]
-    }));
-    print_table(&rows);
+    };
+    std::iter::once(header).chain(lines.iter().map(cells)).collect()
 }
