@@ -133,9 +133,10 @@ fn rates(rows: &[&Row]) -> Vec<Vec<String>> {
 
 /// A line for each run; what the thesis does not state is empty.
 pub fn csv(record: &Record) -> String {
-    let mut text = "figure,scene,csg_nodes,geometries,csg,prepare_seconds,trace_seconds,camera_paths,paths_per_second,gain,\
+    let mut text =
+        "figure,scene,csg_nodes,geometries,csg,prepare_seconds,trace_seconds,camera_paths,paths_per_second,gain,\
                     thesis_prepare_seconds,thesis_trace_seconds,thesis_gain,art_paths_per_second\n"
-        .to_owned();
+            .to_owned();
     let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value}"));
     for row in &record.rows {
         for run in &row.runs {

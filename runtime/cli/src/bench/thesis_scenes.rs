@@ -148,10 +148,5 @@ pub const SCENES: &[ThesisScene] = &[
         "meshes/data/asian_dragon.ply",
         &[(Native, ABSENT), (Tree, both(64.43, 304.29))],
     ),
-    mesh(
-        "4.5f",
-        &[("model", "\"lucy\"")],
-        "meshes/data/lucy.ply",
-        &[(Native, ABSENT), (Tree, both(302.19, 327.59))],
-    ),
+    mesh("4.5f", &[("model", "\"lucy\"")], "meshes/data/lucy.ply", &[(Native, ABSENT), (Tree, both(302.19, 327.59))]),
 ];
