@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arsc_spectral::Spectrum;
+use arsc_spectral::{MerlBrdf, Spectrum};
 
 use crate::Varying;
 
@@ -98,6 +98,11 @@ pub enum Bsdf {
     },
     /// Parts and parameters that vary over the surface.
     Varying(Arc<Varying>),
+    /// Measured reflection from a file; the path is relative to the root script's folder. Its content comes along.
+    Measured {
+        path: Arc<str>,
+        brdf: Arc<MerlBrdf>,
+    },
     /// A clear coat over an opaque base, with a film between the two that absorbs (per metre) over a thickness (metres). [`Bsdf::is_coat`] and
     /// [`Bsdf::is_base`] say what may be which.
     Layered {

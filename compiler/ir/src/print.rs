@@ -153,6 +153,7 @@ impl Display for Text<'_, Bsdf> {
                 Call::new(f, "retarder")?.float("retardance", *retardance)?.float("angle", *angle)?.end()
             }
             Bsdf::Varying(varying) => write!(f, "{}", Text(&**varying)),
+            Bsdf::Measured { path, .. } => Call::new(f, "measured")?.arg("path", Quoted(path))?.end(),
             Bsdf::Layered { coat, base, absorption, thickness } => Call::new(f, "layered")?
                 .arg("coat", Text(&**coat))?
                 .arg("base", Text(&**base))?

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use arsc_diagnostics::{SourceId, Span};
 use arsc_geometry::{ClosedMesh, DVec3, Shape, TriangleMesh};
-use arsc_spectral::{Observer, Raster, Spectrum, WavelengthRange};
+use arsc_spectral::{MerlBrdf, Observer, Raster, Spectrum, WavelengthRange};
 
 use crate::args::{Args, float, float_list, floats, index, integer};
 use crate::image_action::{image_action, tone_map};
@@ -40,6 +40,10 @@ impl std::error::Error for ReadError {}
 /// Where the content of files comes from, by path: the text form names them only.
 pub trait Contents {
     fn mesh(&self, _path: &str) -> Option<Arc<TriangleMesh>> {
+        None
+    }
+
+    fn brdf(&self, _path: &str) -> Option<Arc<MerlBrdf>> {
         None
     }
 
@@ -239,6 +243,11 @@ pub(crate) fn bsdf(term: Term, contents: &dyn Contents) -> Result<Bsdf, Fault> {
             absorption: spectrum(args.take("absorption")?)?,
             thickness: args.float("thickness")?,
         },
+        "measured" => {
+            let path: Arc<str> = args.text("path")?.into();
+            let brdf = contents.brdf(&path).ok_or_else(|| (args.offset, format!("there is no table `{path}`")))?;
+            Bsdf::Measured { path, brdf }
+        }
         "depolariser" => Bsdf::Depolariser { transmittance: spectrum(args.take("transmittance")?)? },
         _ => return args.unknown("bsdf"),
     };

@@ -241,7 +241,7 @@ fn check_bsdf(bsdf: &Bsdf) -> Check {
         }
         Bsdf::Dielectric { ior } => check_spectrum(ior),
         Bsdf::Conductor { eta, k } => check_spectrum(eta).and(check_spectrum(k)),
-        Bsdf::Inert => Ok(()),
+        Bsdf::Inert | Bsdf::Measured { .. } => Ok(()),
         Bsdf::ThinDielectric { ior } => check_spectrum(ior),
         Bsdf::Phong { reflectance, exponent } => {
             require(*exponent >= 0.0 && exponent.is_finite(), "an exponent is negative or not finite")?;

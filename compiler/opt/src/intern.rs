@@ -99,6 +99,7 @@ impl Structural for Bsdf {
                 k.structural_hash(hasher);
             }
             Bsdf::Inert => {}
+            Bsdf::Measured { path, .. } => path.hash(hasher),
             Bsdf::ThinDielectric { ior } => ior.structural_hash(hasher),
             Bsdf::Phong { reflectance, exponent } => {
                 reflectance.structural_hash(hasher);

@@ -1,10 +1,10 @@
-//! Data files that a script names and that are no meshes nor tables: pictures, lamps.
+//! Data files that a script names and that are neither meshes nor tables of spectra: pictures, lamps, measured reflection.
 
 use std::sync::Arc;
 
 use arsc_diagnostics::codes::sema as codes;
 use arsc_image::Picture;
-use arsc_spectral::{PhotometricWeb, Raster};
+use arsc_spectral::{MerlBrdf, PhotometricWeb, Raster};
 
 use crate::code::Site;
 use crate::eval::{Eval, Machine};
@@ -25,6 +25,20 @@ impl Machine<'_> {
         let picture = (file.path, Arc::new(image));
         self.pictures.insert(key, picture.clone());
         Ok(picture)
+    }
+
+    /// A table of reflection, with its path from the root script's folder; read once. The path is the call's first argument.
+    pub fn measured_brdf(&mut self, path: &str, site: &Site) -> Eval<(Arc<str>, Arc<MerlBrdf>)> {
+        let key = (site.span.source, path.to_owned());
+        if let Some(known) = self.brdfs.get(&key) {
+            return Ok(known.clone());
+        }
+        let file = self.assets.bytes(site.span.source, path).map_err(|error| asset_failure(site, path, &error))?;
+        let brdf = MerlBrdf::parse(&file.bytes)
+            .map_err(|error| malformed(site, "measured reflection", path, error.to_string()))?;
+        let table = (file.path, Arc::new(brdf));
+        self.brdfs.insert(key, table.clone());
+        Ok(table)
     }
 
     /// A lamp's intensities times a factor. The path is the call's first argument.

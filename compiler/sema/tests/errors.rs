@@ -173,6 +173,9 @@ fn values() {
     expect("scene { mesh(\"torn.ply\"); mesh_solid(\"torn.ply\") }", &[("E0214", "\"torn.ply\"")]);
     expect("scene { environment_map(\"broken.hdr\") }", &[("E0215", "\"broken.hdr\"")]);
     expect("scene { environment_map(\"none.hdr\") }", &[("E0210", "\"none.hdr\"")]);
+    let measured =
+        |path| format!("import std.material {{ measured }}\nscene {{ sphere() |> with(measured(\"{path}\")) }}");
+    expect(&measured("broken.hdr"), &[("E0215", "\"broken.hdr\"")]);
     expect("scene { ies_light(\"data/a.csv\") }", &[("E0215", "\"data/a.csv\"")]);
     expect("scene { mesh_solid(\"broken.ply\") }", &[("E0213", "\"broken.ply\"")]);
     expect("scene { mesh_solid(\"bunny.ply\") - mesh_solid(\"bunny.ply\") }", &[]);

@@ -66,6 +66,7 @@ fn lower_bsdf(bsdf: &arsc_ir::Bsdf) -> Bsdf {
         arsc_ir::Bsdf::Retarder { retardance, angle } => Bsdf::retarder(*retardance, *angle),
         arsc_ir::Bsdf::Depolariser { transmittance } => Bsdf::depolariser(transmittance),
         arsc_ir::Bsdf::Inert => Bsdf::Inert,
+        arsc_ir::Bsdf::Measured { brdf, .. } => Bsdf::measured(brdf.clone()),
         arsc_ir::Bsdf::Layered { coat, base, absorption, thickness } => {
             let (coat, base) = (lower_bsdf(coat), lower_bsdf(base));
             let depth = Spectrum::Scaled { factor: *thickness, spectrum: Arc::new(absorption.clone()) };

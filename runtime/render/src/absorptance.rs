@@ -40,6 +40,7 @@ impl Absorptance {
             | Bsdf::Phong(_)
             | Bsdf::RoughConductor(_)
             | Bsdf::Layered(_)
+            | Bsdf::Measured(_)
             | Bsdf::Fluorescent(_) => Absorptance::Table(tabulate(bsdf)),
             _ => Absorptance::None,
         }

@@ -14,6 +14,7 @@ mod dense;
 pub mod dispersion;
 mod eval;
 pub mod illuminant;
+mod merl;
 mod observer;
 mod photometric_web;
 pub mod pictures;
@@ -37,6 +38,7 @@ mod wavelengths;
 pub use colour_basis::ColourBasis;
 pub use daylight::{DAYLIGHT_KELVIN, daylight, daylight_chromaticity, normalised};
 pub use dense::DenseSpectrum;
+pub use merl::{MerlBrdf, MerlError};
 pub use observer::{
     LUMINOUS_EFFICACY, Observer, Y_INTEGRAL_NM, chromaticity, d65, xyz_of_radiance, xyz_of_reflectance,
 };

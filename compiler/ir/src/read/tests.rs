@@ -160,6 +160,7 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
         b.bsdf(Bsdf::Polariser { transmittance: tables.0.clone(), angle: tables.2 });
         b.bsdf(Bsdf::Retarder { retardance: tables.2, angle: -0.5 });
         b.bsdf(Bsdf::Depolariser { transmittance: tables.0.clone() });
+        b.bsdf(Bsdf::Measured { path: "a.binary".into(), brdf: table() });
         b.bsdf(Bsdf::Layered {
             coat: Arc::new(Bsdf::RoughDielectric { ior: tables.1.clone(), facets }),
             base: Arc::new(Bsdf::Lambert { reflectance: tables.0.clone() }),
@@ -251,12 +252,22 @@ fn pixel() -> Arc<Raster> {
     Arc::new(Raster::new(1, 1, Channels::Rgb, vec![1.0; 3]).expect("a pixel"))
 }
 
+fn table() -> Arc<MerlBrdf> {
+    static TABLE: std::sync::LazyLock<Arc<MerlBrdf>> =
+        std::sync::LazyLock::new(|| Arc::new(MerlBrdf::from_fn(|_| [0.1; 3])));
+    TABLE.clone()
+}
+
 /// A file of each kind under every name.
 struct Files;
 
 impl Contents for Files {
     fn mesh(&self, _path: &str) -> Option<Arc<TriangleMesh>> {
         Some(tetrahedron())
+    }
+
+    fn brdf(&self, _path: &str) -> Option<Arc<MerlBrdf>> {
+        Some(table())
     }
 
     fn image(&self, _path: &str) -> Option<Arc<Raster>> {

@@ -22,7 +22,7 @@ use arsc_diagnostics::codes::sema as codes;
 use arsc_diagnostics::{Code as DiagnosticCode, Diagnostic, SourceId, Span};
 use arsc_geometry::DAffine3;
 use arsc_ir::{Bsdf, Emitter, Leaf, Medium, Node, NodeId, NodeKind, Shape, Surface};
-use arsc_spectral::Raster;
+use arsc_spectral::{MerlBrdf, Raster};
 use arsc_texture::ExpressionGraph;
 
 use crate::code::{GlobalId, Program, Site};
@@ -86,6 +86,7 @@ pub struct Machine<'a> {
     collected: Vec<Value>,
     tables: FxHashMap<(SourceId, String), Arc<Table>>,
     pub(crate) pictures: FxHashMap<(SourceId, String), (Arc<str>, Arc<Raster>)>,
+    pub(crate) brdfs: FxHashMap<(SourceId, String), (Arc<str>, Arc<MerlBrdf>)>,
     /// By path.
     pub(crate) closed_meshes: FxHashMap<Arc<str>, ClosedOutcome>,
     /// What varies over surfaces.
@@ -118,6 +119,7 @@ impl<'a> Machine<'a> {
             collected: Vec::new(),
             tables: FxHashMap::default(),
             pictures: FxHashMap::default(),
+            brdfs: FxHashMap::default(),
             closed_meshes: FxHashMap::default(),
             expressions: ExpressionGraph::default(),
             nodes: Vec::new(),

@@ -21,7 +21,17 @@ pub fn builtins() -> Vec<Builtin> {
     let mut list = rough();
     list.extend(sheets());
     list.push(layered());
+    list.push(measured());
     list
+}
+
+fn measured() -> Builtin {
+    of("measured", "Isotropic reflection as it was measured (Matusik and others 2003).")
+        .param(Param::new("path", Type::Str, "`.binary` file of the MERL form, relative to the script"))
+        .runs(Type::Bsdf, |m, args, site| {
+            let (path, brdf) = m.measured_brdf(args[0].as_str(), site)?;
+            bsdf(m, Bsdf::Measured { path, brdf })
+        })
 }
 
 fn layered() -> Builtin {

@@ -16,6 +16,7 @@ mod dielectric;
 mod fluorescent;
 mod lambert;
 mod layered;
+mod measured;
 mod microfacets;
 mod mirror;
 mod oren_nayar;
@@ -26,7 +27,9 @@ mod rough_dielectric;
 mod sheet;
 mod thin_dielectric;
 
-use arsc_spectral::{DenseSpectrum, Reradiation, SampledSpectrum, SampledWavelengths, Spectrum};
+use std::sync::Arc;
+
+use arsc_spectral::{DenseSpectrum, MerlBrdf, Reradiation, SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 
 use crate::polarisation::{DiattenuatingRetarder, Mueller, Polarisation, s_axis};
@@ -36,6 +39,7 @@ pub use dielectric::Dielectric;
 pub use fluorescent::{Fluorescent, FluorescentEvent};
 pub use lambert::Lambert;
 pub use layered::Layered;
+pub use measured::Measured;
 pub use microfacets::{MicrofacetShape, Microfacets};
 pub use mirror::Mirror;
 pub use oren_nayar::OrenNayar;
@@ -62,6 +66,7 @@ pub enum Bsdf {
     /// Diffuse; as a bsdf what keeps its wavelength, see [`Bsdf::fluorescent`] for the rest.
     Fluorescent(Box<Fluorescent>),
     Layered(Box<Layered>),
+    Measured(Box<Measured>),
     /// No interface: light goes straight on.
     Inert,
 }
@@ -135,6 +140,11 @@ impl Bsdf {
         Layered::new(upper, lower, depth).map(|layered| Bsdf::Layered(Box::new(layered)))
     }
 
+    /// Measured reflection.
+    pub fn measured(brdf: Arc<MerlBrdf>) -> Bsdf {
+        Bsdf::Measured(Box::new(Measured::new(brdf)))
+    }
+
     /// A sheet that lets the field along its axis through, `transmittance` of its power. The axis stands at `angle`, radians,
     /// from the direction of growing u, towards that of the normal crossed with it.
     pub fn polariser(transmittance: &Spectrum, angle: f64) -> Bsdf {
@@ -175,6 +185,7 @@ impl Bsdf {
             | Bsdf::RoughConductor(_)
             | Bsdf::RoughDielectric(_)
             | Bsdf::Fluorescent(_) => false,
+            Bsdf::Measured(_) => false,
             Bsdf::Layered(layered) => layered.is_specular(),
             Bsdf::Mirror(_)
             | Bsdf::Dielectric(_)
@@ -239,6 +250,7 @@ impl Bsdf {
             Bsdf::Lambert(lambert) => lambert.eval(wo, wi, wavelengths),
             Bsdf::OrenNayar(oren_nayar) => oren_nayar.eval(wo, wi, wavelengths),
             Bsdf::Phong(phong) => phong.eval(wo, wi, wavelengths),
+            Bsdf::Measured(measured) => measured.eval(wo, wi, wavelengths),
             _ => SampledSpectrum::ZERO,
         };
         P::Mueller::depolariser(depolarised)
@@ -259,6 +271,7 @@ impl Bsdf {
             Bsdf::Phong(phong) => same(phong.pdf(wo, wi)),
             Bsdf::RoughConductor(rough) => same(rough.pdf(wo, wi)),
             Bsdf::Layered(layered) => same(layered.pdf(wo, wi)),
+            Bsdf::Measured(measured) => same(measured.pdf(wo, wi)),
             Bsdf::RoughDielectric(rough) => rough.pdf(wo, wi, rough.ior(relative, wavelengths)),
             _ => SampledSpectrum::ZERO,
         }
@@ -290,6 +303,7 @@ impl Bsdf {
             Bsdf::Sheet(sheet) => sheet.sample(wo, wavelengths),
             Bsdf::Fluorescent(both) => both.elastic().sample(wo, u, u_lobe, wavelengths),
             Bsdf::Layered(layered) => layered.sample(wo, u, u_lobe, wavelengths),
+            Bsdf::Measured(measured) => measured.sample(wo, u, u_lobe, wavelengths),
             Bsdf::Inert => Some(BsdfSample::straight_on(wo)),
         }
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use arsc_spectral::{Dye, Fluorescence, Reradiation, SampledSpectrum, SampledWavelengths, Spectrum};
+use arsc_spectral::{Dye, Fluorescence, MerlBrdf, Reradiation, SampledSpectrum, SampledWavelengths, Spectrum};
 use glam::DVec3;
 use rand::Rng;
 
@@ -217,6 +217,21 @@ fn phong() {
     for exponent in [1.0, 3.5, 20.0] {
         assert_conforms(&Bsdf::phong(&constant(1.0), exponent));
     }
+}
+
+/// Tables of known functions: of Lambert's, coloured, and of a lobe about the half vector with a term in all three angles.
+#[test]
+fn measured() {
+    let even = Bsdf::measured(MerlBrdf::from_fn(|_| [0.3, 0.2, 0.1]).into());
+    let lobe = MerlBrdf::from_fn(|[h, d, t]| {
+        [0.1, 0.05, 0.02].map(|c| c + 0.3 * h.cos().powi(40) * (1.0 + 0.1 * d * (2.0 * t).cos()))
+    });
+    assert_conforms(&even);
+    assert_conforms(&Bsdf::measured(lobe.into()));
+    assert_conforms(&Bsdf::measured(MerlBrdf::from_fn(|_| [0.0; 3]).into()));
+    let grey = Bsdf::measured(MerlBrdf::from_fn(|_| [0.25; 3]).into());
+    let value = grey.eval::<Unpolarised>(directions()[4], directions()[6], &wavelengths());
+    assert!((value.hero() - 0.25).abs() < 1e-6, "{value:?}");
 }
 
 #[test]

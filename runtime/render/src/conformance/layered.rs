@@ -45,7 +45,7 @@ fn at(theta: f64, turn: f64) -> DVec3 {
 
 /// Mean of f over thousands of turns of both directions about the normal: an isotropic bsdf is the same, its random numbers are not.
 fn mean_value(bsdf: &Bsdf, theta_o: f64, theta_i: f64, between: f64) -> (f64, f64) {
-    let values = (0..4000).map(|i| {
+    let values = (0..8000).map(|i| {
         let turn = f64::from(i) * 0.01;
         f64::from(bsdf.eval::<Unpolarised>(at(theta_o, turn), at(theta_i, turn + between), &wavelengths()).hero())
     });
