@@ -109,3 +109,41 @@ impl From<Option<Span>> for Crossings {
         span.map_or(Crossings::NONE, |span| Crossings::interval(span.t0, span.f0, span.t1, span.f1))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers in [-1, 1) from a linear congruence.
+    fn numbers(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+    }
+
+    #[test]
+    fn the_short_way_through_a_box_finds_the_same_span_and_faces() {
+        let mut number = numbers(3);
+        let mut point = move || DVec3::new(number(), number(), number());
+        let mut met = 0;
+        for i in 0..20_000 {
+            let (a, b, origin) = (point(), point(), point() * 2.0);
+            // Every other line goes through a corner.
+            let dir = if i % 2 == 0 { point() } else { a.min(b) - origin };
+            let (min, max, inverse) = (a.min(b), a.max(b), dir.recip());
+            let (t0, t1) = oblique_span(min, max, origin, inverse);
+            match Span::of_box(min, max, origin, inverse) {
+                Some(span) => {
+                    assert_eq!((t0, t1), (span.t0, span.t1));
+                    let face = |t, enters| oblique_face(min, max, origin, inverse, t, enters);
+                    assert_eq!((face(t0, true), face(t1, false)), (span.f0, span.f1));
+                    met += 1;
+                }
+                None => assert!(t0 >= t1),
+            }
+        }
+        assert!(met > 2_000, "{met}");
+    }
+}

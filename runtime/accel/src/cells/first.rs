@@ -158,3 +158,38 @@ fn face_of_box(line: &Line, leaf: &CellLeaf, t: f64, enters: bool) -> u32 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use arsc_geometry::{Ray, Span};
+    use rand::{Rng, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    use super::*;
+    use crate::query::View;
+
+    #[test]
+    fn pairs_of_balls_have_the_bits_of_single_ones() {
+        let mut rng = Pcg64::seed_from_u64(5);
+        let mut met = 0;
+        for _ in 0..20_000 {
+            let mut point = || DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+            let (origin, dir, centers) = (point() * 3.0, point().normalize(), [point(), point()]);
+            let radii = [0, 1].map(|_| rng.random_range(0.1..1.5));
+            let view = View::world(&Ray::new(origin, dir));
+            let kernels = [0, 1].map(|i| Kernel::Ball { center: centers[i], radius: radii[i] });
+            let (entries, exits) = BallPair::new([Some(&kernels[0]), Some(&kernels[1])]).cross(&Splat::new(&view.ray));
+            for i in 0..2 {
+                let (t0, t1) = (entries.to_array()[i], exits.to_array()[i]);
+                match Span::of_ball(centers[i], radii[i], origin, dir, view.ray.inverse_square) {
+                    Some(span) => assert_eq!((t0, t1), (span.t0, span.t1)),
+                    None => assert!(!(t0 < t1), "{t0} {t1}"),
+                }
+                met += usize::from(t0 < t1);
+            }
+            let (entries, _) = BallPair::new([Some(&kernels[0]), None]).cross(&Splat::new(&view.ray));
+            assert!(entries.to_array()[1].is_nan());
+        }
+        assert!(met > 3_000, "{met}");
+    }
+}
