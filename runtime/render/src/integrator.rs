@@ -105,10 +105,12 @@ pub fn incident_radiance<P: Polarisation>(
         let mut owned = None;
         let bsdf = world.bsdf(&mut hit, &mut u_lobe[0], wavelengths, &mut owned);
         let event = Event::new(world, &hit, wo, bsdf);
-        if !event.bsdf.is_specular() {
-            let choice = sampler.single(pair + LIGHT_CHOICE);
+        if !event.bsdf.is_specular()
+            && let Some((source, probability, rest)) = world.choose_light(|| sampler.single(pair + LIGHT_CHOICE))
+        {
             let u = sampler.pair(pair + LIGHT_POINT);
-            if let Some(direct) = event.sampled_light::<P>(world, choice, u, wavelengths, path.path_pdf) {
+            let chosen = ChosenLight { source, probability, rest, u };
+            if let Some(direct) = event.sampled_light::<P>(world, &chosen, wavelengths, path.path_pdf) {
                 radiance += path.carry(&direct);
             }
         }
@@ -158,6 +160,14 @@ fn survives_roulette<P: Polarisation>(path: &mut Path<P>, u: f64) -> bool {
     survives
 }
 
+/// A light source with its probability, and random numbers for a point of it.
+struct ChosenLight {
+    source: LightSource,
+    probability: f64,
+    rest: f64,
+    u: [f64; 2],
+}
+
 /// A scattering event: a hit with its local frame.
 struct Event<'a> {
     hit: &'a Hit,
@@ -190,12 +200,11 @@ impl<'a> Event<'a> {
     fn sampled_light<P: Polarisation>(
         &self,
         world: &World,
-        choice: f64,
-        u: [f64; 2],
+        chosen: &ChosenLight,
         wavelengths: &SampledWavelengths,
         path_pdf: SampledSpectrum,
     ) -> Option<P::Stokes> {
-        let (source, probability, rest) = world.choose_light(choice)?;
+        let ChosenLight { source, probability, rest, u } = *chosen;
         let (ray, light, pdf) = match source {
             LightSource::Part { part, .. } => {
                 let sample = world.geometry.sample_part(part, rest, u)?;

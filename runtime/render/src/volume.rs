@@ -494,7 +494,7 @@ impl<'w, P: Polarisation> Tracer<'w, P> {
         wavelengths: &SampledWavelengths,
         draw: &Draw,
     ) -> Option<LightSample<P::Stokes>> {
-        let (source, probability, rest) = self.world.choose_light(draw.pair(LIGHT_CHOICE)[0])?;
+        let (source, probability, rest) = self.world.choose_light(|| draw.pair(LIGHT_CHOICE)[0])?;
         let u = draw.pair(LIGHT_POINT);
         let (ray, light, pdf) = match source {
             LightSource::Part { part, .. } => {

@@ -1,6 +1,6 @@
 //! Maps from the unit square that preserve measure, with their densities.
 
-use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, TAU};
 
 use glam::{DVec2, DVec3};
 
@@ -14,9 +14,24 @@ pub fn concentric_disk(u: [f64; 2]) -> DVec2 {
     if x == 0.0 && y == 0.0 {
         return DVec2::ZERO;
     }
-    let (r, angle) = if x.abs() > y.abs() { (x, FRAC_PI_4 * (y / x)) } else { (y, FRAC_PI_2 - FRAC_PI_4 * (x / y)) };
-    let (sin, cos) = angle.sin_cos();
-    DVec2::new(r * cos, r * sin)
+    if x.abs() > y.abs() {
+        let (sin, cos) = short_sin_cos(FRAC_PI_4 * (y / x));
+        DVec2::new(x * cos, x * sin)
+    } else {
+        let (sin, cos) = short_sin_cos(FRAC_PI_4 * (x / y));
+        DVec2::new(y * sin, y * cos)
+    }
+}
+
+/// Of at most an eighth of a turn either way, with an error of 2e-9: Taylor's series. Places on a disk need no more, since
+/// what depends on them is computed from where they are.
+#[inline]
+fn short_sin_cos(angle: f64) -> (f64, f64) {
+    let a = angle * angle;
+    let (a2, a4) = (a * a, a * a * a * a);
+    let sin = (1.0 - a / 6.0) + a2 * (1.0 / 120.0 - a / 5_040.0) + a4 * (1.0 / 362_880.0);
+    let cos = (1.0 - a / 2.0) + a2 * (1.0 / 24.0 - a / 720.0) + a4 * (1.0 / 40_320.0 - a / 3_628_800.0);
+    (angle * sin, cos)
 }
 
 /// The hemisphere z >= 0 with density z / pi per steradian (Malley).

@@ -264,14 +264,17 @@ impl World {
         self.environments.iter().zip(self.environment_probability.iter().copied())
     }
 
-    /// A light, its probability, and what is left of `u`. `None` without lights.
+    /// A light, its probability, and what is left of `u`, which is asked for if need be. `None` without lights.
     #[inline]
-    pub(crate) fn choose_light(&self, u: f64) -> Option<(LightSource, f64, f64)> {
-        if self.choice.is_empty() {
-            return None;
+    pub(crate) fn choose_light(&self, u: impl FnOnce() -> f64) -> Option<(LightSource, f64, f64)> {
+        match self.sources[..] {
+            [] => None,
+            [source @ (LightSource::Environment(_) | LightSource::Light(_))] => Some((source, 1.0, 0.0)),
+            _ => {
+                let (index, rest) = self.choice.sample(u());
+                Some((self.sources[index], self.choice.probability(index), rest))
+            }
         }
-        let (index, rest) = self.choice.sample(u);
-        Some((self.sources[index], self.choice.probability(index), rest))
     }
 
     /// Probability that light sampling chooses the part that was hit.
