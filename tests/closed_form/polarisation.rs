@@ -5,7 +5,7 @@ use arsc_render::fresnel::Interface;
 use arsc_render::{Bsdf, Camera, Environment, FilterShape, Material, ReconstructionFilter};
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 
-use super::support::{Stage, camera, constant, emitter, estimate, render, spot_camera, stokes};
+use super::support::{Stage, camera, constant, emitter, estimate, lambert, render, spot_camera, stokes};
 
 fn smooth(bsdf: Bsdf) -> Material {
     Material { bsdf, ..Material::default() }
@@ -120,6 +120,50 @@ fn crossed_brewster_reflections_are_dark() {
     let reflectance = Interface::new(angle.cos(), 1.5).reflectance();
     let unpolarised = estimate(&render(&world, &camera, 4096, 8));
     assert!((unpolarised.mean / (reflectance * reflectance) - 1.0).abs() < 0.2, "{unpolarised:?}");
+}
+
+/// Where the sky is that [`ball_under_half_a_sky`] sees, within a right angle: from level ahead, upwards.
+const SKY: f64 = 1.3;
+
+/// A ray that meets a glass ball below its middle, level: radiance by angle of incidence, s and p apart and with their
+/// mean taken at every meeting. The outer reflection is dark, and what leaves at the first chance is bright.
+fn ball_under_half_a_sky(angle: f64) -> [f64; 2] {
+    let Interface { rs, rp, cos_t, .. } = Interface::new(angle.cos(), 1.5);
+    let inner = cos_t.acos();
+    // The ray is turned upwards, by so much after k reflections within.
+    let turned = |k: f64| 2.0 * (angle - inner) + k * (std::f64::consts::PI - 2.0 * inner);
+    let lit = |angle: f64| if (angle - SKY).cos() > 0.0 { 1.0 } else { 0.0 };
+    let radiance = |r: f64| {
+        let within: f64 = (0..60).map(|k| (1.0 - r).powi(2) * r.powi(k) * lit(turned(f64::from(k)))).sum();
+        // The outer reflection goes down.
+        within + r * lit(-(std::f64::consts::PI - 2.0 * angle))
+    };
+    [0.5 * (radiance(rs) + radiance(rp)), radiance(0.5 * (rs + rp))]
+}
+
+/// Light of an unpolarised sky is polarised by the first surface of the glass and meets the second as such: without
+/// polarisation its radiance is wrong by 0.024 of 0.430 at 80 degrees. Of 2^18 paths with values of at most 1 the
+/// standard error is below 1e-3; four of them.
+#[test]
+fn glass_in_an_unpolarised_sky_needs_polarisation() {
+    for angle in [80f64, 75.0] {
+        let angle = angle.to_radians();
+        let mut stage = Stage::default();
+        stage.environments.push(Environment::constant(&constant(1.0)));
+        stage.sphere(DVec3::ZERO, 1.0, smooth(Bsdf::dielectric(&constant(1.5))));
+        let sky = DVec3::new(0.0, SKY.cos(), SKY.sin());
+        let below = DAffine3::from_rotation_translation(DQuat::from_rotation_arc(DVec3::Z, sky), sky * -1e4);
+        stage.solid(Shape::HalfSpace, below, lambert(0.0));
+        let world = stage.build();
+        let height = -angle.sin();
+        let camera = spot_camera(DVec3::new(0.0, -3.0, height), DVec3::new(0.0, 0.0, height));
+        let [exact, averaged] = ball_under_half_a_sky(angle);
+        let polarised = stokes(&world, &camera, 4096, 60)[0];
+        assert!((polarised - exact).abs() < 4e-3, "{polarised} instead of {exact}");
+        let unpolarised = estimate(&render(&world, &camera, 4096, 60)).mean;
+        assert!((unpolarised - averaged).abs() < 4e-3, "{unpolarised} instead of {averaged}");
+        assert!(exact - averaged > 0.02, "{exact} and {averaged}");
+    }
 }
 
 /// Looks down at sheets one below the other, x to the right, with a light of radiance 1 under them,
