@@ -22,14 +22,14 @@ fn part(weight: f64, bsdf: Bsdf) -> VaryingPart {
     VaryingPart { weight: Expression::constant(weight), bsdf, parameters: Vec::new() }
 }
 
-fn grey(weight: Expression) -> Parameter {
+fn grey_of(weight: Expression) -> Parameter {
     let spectrum = DenseSpectrum::new(&constant(1.0));
     Parameter::Reflectance(vec![SpectrumTerm { weight, spectrum, color: None }])
 }
 
 fn coloured(reflectance: Expression) -> Material {
     let bsdf = Bsdf::lambert(&constant(0.5));
-    let parameters = vec![grey(reflectance)];
+    let parameters = vec![grey_of(reflectance)];
     varying(vec![VaryingPart { weight: Expression::constant(1.0), bsdf, parameters }], DAffine3::IDENTITY)
 }
 
@@ -69,7 +69,7 @@ fn places_are_found_in_the_space_of_the_texture() {
         stage.environments.push(Environment::constant(&constant(1.0)));
         let material = {
             let bsdf = Bsdf::lambert(&constant(0.5));
-            let parameters = vec![grey(input(Input::X))];
+            let parameters = vec![grey_of(input(Input::X))];
             let part = VaryingPart { weight: Expression::constant(1.0), bsdf, parameters };
             varying(vec![part], DAffine3::from_translation(DVec3::X * shift))
         };
@@ -120,7 +120,7 @@ fn constant_parameters_give_the_plain_picture() {
     let rough =
         |shape, alpha: f64| Bsdf::rough_conductor(&constant(0.3), &constant(3.0), Microfacets::new(shape, [alpha; 2]));
     let of = |value: f64| Expression::constant(value);
-    let reflectance = || grey(of(0.4));
+    let reflectance = || grey_of(of(0.4));
     let other = constant(0.9);
     let mut cases = vec![
         (Bsdf::lambert(&grey), Bsdf::lambert(&other), vec![reflectance()]),
