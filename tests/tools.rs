@@ -52,8 +52,11 @@ impl Folder {
 
     /// Runs with every argument that names a file of the folder made a path; gives status and all output.
     fn run(&self, line: &str) -> (i32, String) {
-        let is_file =
-            |word: &str| Path::new(word).extension().is_some_and(|e| e.to_str().is_some_and(|e| e.len() >= 3));
+        let is_file = |word: &str| {
+            Path::new(word)
+                .extension()
+                .is_some_and(|e| e.to_str().is_some_and(|e| e.len() >= 3 && e.starts_with(char::is_alphabetic)))
+        };
         let words: Vec<String> = line
             .split_whitespace()
             .map(|word| if is_file(word) { self.path(word).display().to_string() } else { word.to_owned() })

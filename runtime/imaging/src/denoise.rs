@@ -46,8 +46,10 @@ fn bands<E>(image: &mut SpectralImage, clean: &mut impl FnMut(Vec<Triple>) -> Re
     let count = image.bands();
     let third = count.div_ceil(3);
     for first in 0..third {
-        // The last ones are repeated where the thirds are not even.
-        let three = [first, first + third, first + 2 * third].map(|band| band.min(count - 1));
+        // Where the thirds are not even, the first band stands in for the missing one.
+        let wanted = [first, first + third, first + 2 * third];
+        let three = wanted.map(|band| if band < count { band } else { first });
+        let slots = || wanted.into_iter().enumerate().filter(|(_, band)| *band < count);
         let noisy = image.radiance.chunks_exact(count).map(|bands| three.map(|band| light(bands[band]))).collect();
         let filtered = clean(noisy)?;
         if let Some(stokes) = &mut image.stokes {
@@ -59,15 +61,15 @@ fn bands<E>(image: &mut SpectralImage, clean: &mut impl FnMut(Vec<Triple>) -> Re
                 };
                 let (plus, minus) = (analysed(1.0)?, analysed(-1.0)?);
                 for (i, stokes) in stokes.chunks_exact_mut(count).enumerate() {
-                    for (k, band) in three.into_iter().enumerate() {
+                    for (k, band) in slots() {
                         stokes[band][parameter] = plus[i][k] - minus[i][k];
                     }
                 }
             }
         }
         for (bands, filtered) in image.radiance.chunks_exact_mut(count).zip(filtered) {
-            for (band, value) in three.into_iter().zip(filtered) {
-                bands[band] = value;
+            for (k, band) in slots() {
+                bands[band] = filtered[k];
             }
         }
     }
