@@ -8,10 +8,12 @@
 
 mod closed_form {
     mod determinism;
+    mod first_hits;
     mod fluorescence;
     mod furnace;
     mod irradiance;
     mod media;
+    mod noise;
     mod polarisation;
     mod sky;
     mod specular;

@@ -3,8 +3,8 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use arsc_render::{
-    Bsdf, Camera, Environment, Film, FilterShape, Material, PathTraceSettings, Progress, ReconstructionFilter, World,
-    path_trace,
+    Bsdf, Camera, Environment, Film, FilterShape, Material, PathTraceSettings, Progress, ReconstructionFilter,
+    Sampling, World, path_trace,
 };
 use arsc_spectral::Spectrum;
 use glam::DVec3;
@@ -24,7 +24,8 @@ fn scene() -> (World, Camera) {
 }
 
 fn settings(samples: u32) -> PathTraceSettings {
-    PathTraceSettings { samples, max_depth: 8, seed: 7, ..PathTraceSettings::default() }
+    let sampling = Sampling { samples, seed: 7, ..Sampling::default() };
+    PathTraceSettings { sampling, max_depth: 8, ..PathTraceSettings::default() }
 }
 
 fn on_threads(threads: usize, samples: u32, progress: &dyn Progress) -> Film {
@@ -44,7 +45,8 @@ fn any_number_of_threads_gives_the_same_film() {
 #[test]
 fn another_seed_gives_another_film() {
     let (world, camera) = scene();
-    let other = PathTraceSettings { seed: 8, ..settings(2) };
+    let mut other = settings(2);
+    other.sampling.seed = 8;
     assert_ne!(path_trace(&world, &camera, &settings(2), &()), path_trace(&world, &camera, &other, &()));
 }
 
@@ -53,7 +55,9 @@ fn a_crop_has_the_pixels_of_the_whole() {
     let (world, camera) = scene();
     let crop = Some([7, 5, 33, 31]);
     let whole = path_trace(&world, &camera, &settings(3), &()).to_image();
-    let part = path_trace(&world, &camera, &PathTraceSettings { crop, ..settings(3) }, &()).to_image();
+    let mut cropped = settings(3);
+    cropped.sampling.crop = crop;
+    let part = path_trace(&world, &camera, &cropped, &()).to_image();
     for (i, (a, b)) in whole.xyz.iter().zip(&part.xyz).enumerate() {
         let inside = (7..33).contains(&(i % 50)) && (5..31).contains(&(i / 50));
         assert_eq!(*b, if inside { *a } else { [0.0; 3] }, "pixel {i}");

@@ -13,7 +13,9 @@ use arsc_render::{AreaEmitter, Bsdf, Density, Environment, Light, Material, Medi
 use arsc_spectral::{Dye, Fluorescence, Observer, Reradiation, Spectrum, WavelengthRange};
 use glam::{DAffine3, DVec3};
 
-use super::support::{Stage, band_means, camera, constant, estimate, estimate_bands, render, spot_camera, stokes};
+use super::support::{
+    Stage, band_means, camera, constant, estimate, estimate_bands, render, settings, spot_camera, stokes,
+};
 
 fn bell(center_nm: f64, sigma_nm: f64, peak: f64) -> Spectrum {
     Spectrum::Gaussian { center_nm, sigma_nm, peak }
@@ -211,9 +213,8 @@ fn ultraviolet_excites_if_it_is_rendered() {
     let image_of = |min: f64| {
         let wavelengths = WavelengthRange::new(min, 830.0).unwrap();
         let bands = arsc_render::Bands::over(&WavelengthRange::VISIBLE, 10.0, Observer::Cie1931);
-        let settings =
-            PathTraceSettings { samples: 1024, max_depth: 1, wavelengths, bands, ..PathTraceSettings::default() };
-        arsc_render::path_trace(&world, &looking_down(), &settings, &()).to_image()
+        let chosen = PathTraceSettings { wavelengths, bands, ..settings(1024, 1) };
+        arsc_render::path_trace(&world, &looking_down(), &chosen, &()).to_image()
     };
     let blue = 4..12;
     let density = |nm: f64| Fluorescence::Dye(dye.clone()).density(335.0, nm) / (335.0 * 0.9);

@@ -6,7 +6,7 @@ use arsc_accel::{
 use arsc_image::SpectralImage;
 use arsc_render::{
     AreaEmitter, Bsdf, Camera, Environment, FilterShape, Light, Material, Media, PathTraceSettings,
-    ReconstructionFilter, World, path_trace,
+    ReconstructionFilter, Sampling, World, path_trace,
 };
 use arsc_spectral::Spectrum;
 use glam::{DAffine3, DMat3, DVec3};
@@ -111,16 +111,20 @@ pub fn spot_camera(eye: DVec3, target: DVec3) -> Camera {
     camera(eye, target, 1e-4, 8)
 }
 
+pub fn settings(samples: u32, max_depth: u32) -> PathTraceSettings {
+    let sampling = Sampling { samples, ..Sampling::default() };
+    PathTraceSettings { sampling, max_depth, ..PathTraceSettings::default() }
+}
+
 pub fn render(world: &World, camera: &Camera, samples: u32, max_depth: u32) -> SpectralImage {
-    let settings = PathTraceSettings { samples, max_depth, ..PathTraceSettings::default() };
-    let film = path_trace(world, camera, &settings, &());
+    let film = path_trace(world, camera, &settings(samples, max_depth), &());
     assert_eq!(film.rejected(), 0, "samples that are not finite or negative");
     film.to_image()
 }
 
 /// Mean over pixels and bands of S0 to S3.
 pub fn stokes(world: &World, camera: &Camera, samples: u32, max_depth: u32) -> [f64; 4] {
-    let settings = PathTraceSettings { samples, max_depth, polarised: true, ..PathTraceSettings::default() };
+    let settings = PathTraceSettings { polarised: true, ..settings(samples, max_depth) };
     let film = path_trace(world, camera, &settings, &());
     assert_eq!(film.rejected(), 0, "samples that are not finite or negative");
     let image = film.to_image();

@@ -5,7 +5,7 @@ use arsc_render::{AreaEmitter, Bands, Bsdf, Environment, Material, PathTraceSett
 use arsc_spectral::{Observer, Spectrum, WavelengthRange, planck};
 use glam::DVec3;
 
-use super::support::{Stage, band_means, camera, constant, emitter, render, stokes};
+use super::support::{Stage, band_means, camera, constant, emitter, render, settings, stokes};
 
 /// Mean of Planck's law over a band.
 fn band_planck(edges: &[f64], kelvin: f64) -> f64 {
@@ -62,13 +62,12 @@ fn any_range_of_wavelengths_is_rendered_without_bias() {
     ] {
         let wavelengths = WavelengthRange::new(min, max).unwrap();
         let bands = Bands::over(&wavelengths, band_nm, observer);
-        let settings =
-            PathTraceSettings { samples: 256, max_depth: 0, wavelengths, bands, ..PathTraceSettings::default() };
+        let chosen = PathTraceSettings { wavelengths, bands, ..settings(256, 0) };
         let mut stage = Stage::default();
         stage.sphere(DVec3::ZERO, 1.0, emitter(Spectrum::Blackbody { kelvin: 4000.0 }));
         let mut world = stage.build();
         world.weigh_lights(&wavelengths);
-        let image = path_trace(&world, &view, &settings, &()).to_image();
+        let image = path_trace(&world, &view, &chosen, &()).to_image();
         assert_eq!((image.band_edges_nm[0], *image.band_edges_nm.last().unwrap()), (min, max));
         for (mean, edges) in band_means(&image).iter().zip(image.band_edges_nm.windows(2)) {
             let exact = band_planck(edges, 4000.0);
@@ -79,8 +78,8 @@ fn any_range_of_wavelengths_is_rendered_without_bias() {
         let glass = Bsdf::dielectric(&Spectrum::Cauchy { a: 1.5, b_um2: 0.02, c_um4: 0.0 });
         stage.sphere(DVec3::ZERO, 1.0, Material { bsdf: glass, ..Material::default() });
         stage.environments.push(Environment::constant(&constant(1.0)));
-        let settings = PathTraceSettings { max_depth: 100, ..settings };
-        let image = path_trace(&stage.build(), &view, &settings, &()).to_image();
+        let chosen = PathTraceSettings { max_depth: 100, ..chosen };
+        let image = path_trace(&stage.build(), &view, &chosen, &()).to_image();
         let means = band_means(&image);
         let mean = means.iter().sum::<f64>() / means.len() as f64;
         assert!((mean - 1.0).abs() < 0.02, "{min} to {max} nm: {mean}");

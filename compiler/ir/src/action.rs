@@ -49,31 +49,73 @@ impl Strategy {
     }
 }
 
+/// How the samples of a pixel are spread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampler {
+    #[default]
+    Sobol,
+    Halton,
+    Independent,
+}
+
+impl Sampler {
+    pub const ALL: [Sampler; 3] = [Sampler::Sobol, Sampler::Halton, Sampler::Independent];
+
+    /// As scripts write it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Sampler::Sobol => "sobol",
+            Sampler::Halton => "halton",
+            Sampler::Independent => "independent",
+        }
+    }
+}
+
+/// How many samples, and which.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Camera paths per pixel; with a noise threshold or a time limit, at most.
+    pub samples: u32,
+    pub seed: u64,
+    pub sampler: Sampler,
+    /// Relative noise that is enough; positive.
+    pub noise: Option<f64>,
+    /// Seconds after which the render ends with what it has; positive.
+    pub time_limit: Option<f64>,
+}
+
+impl Sampling {
+    /// So many samples of the usual kind.
+    pub const fn of(samples: u32) -> Sampling {
+        Sampling { samples, seed: 0, sampler: Sampler::Sobol, noise: None, time_limit: None }
+    }
+}
+
 /// What `path_trace` is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathTrace {
-    /// Camera paths per pixel.
-    pub samples: u32,
+    pub sampling: Sampling,
     pub max_depth: u32,
-    pub seed: u64,
     pub wavelengths: WavelengthRange,
     /// Width of the picture's bands, nm; positive.
     pub band_nm: f64,
     pub observer: Observer,
     /// Keep track of polarisation.
     pub polarised: bool,
+    /// Channels of what is seen first beside the picture.
+    pub features: bool,
 }
 
 impl Default for PathTrace {
     fn default() -> PathTrace {
         PathTrace {
-            samples: 64,
+            sampling: Sampling::of(64),
             max_depth: 20,
-            seed: 0,
             wavelengths: WavelengthRange::VISIBLE,
             band_nm: 10.0,
             observer: Observer::Cie1931,
             polarised: false,
+            features: false,
         }
     }
 }
@@ -90,6 +132,16 @@ pub enum Action {
     CollectLights,
     /// `scene → scene image<spectral>`
     PathTrace(PathTrace),
+    /// `scene → scene image<spectral>`: how open the space above surfaces is within a distance.
+    AmbientOcclusion {
+        distance: f64,
+        sampling: Sampling,
+    },
+    /// `scene → scene image<spectral>`: surfaces in their colours, lit from the camera.
+    Preview {
+        sampling: Sampling,
+        features: bool,
+    },
     /// `image<spectral> → image<display>`
     ToneMap {
         tone: ToneMap,

@@ -98,6 +98,18 @@ impl<'a> Args<'a> {
     }
 }
 
+/// One of few values by its name.
+pub(crate) fn named<T: Copy>(term: &Term, all: &[T], name: impl Fn(T) -> &'static str) -> Result<T, Fault> {
+    let found = match term.kind {
+        TermKind::Word(word) => all.iter().copied().find(|value| name(*value) == word),
+        _ => None,
+    };
+    found.ok_or_else(|| {
+        let names: Vec<String> = all.iter().map(|value| format!("`{}`", name(*value))).collect();
+        (term.offset, format!("expected one of {}", names.join(", ")))
+    })
+}
+
 pub(crate) fn float(term: &Term) -> Result<f64, Fault> {
     match term.kind {
         TermKind::Number(text) => text.parse().map_err(|_| (term.offset, format!("`{text}` is no number"))),

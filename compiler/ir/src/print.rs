@@ -27,8 +27,8 @@ use crate::image_action::print_tone_map;
 use crate::shape_text::open_shape;
 use crate::write::{Call, Float, Floats};
 use crate::{
-    Action, Attributes, Bsdf, Camera, CutRule, Density, Emitter, Facets, Filter, Ir, Leaf, Material, Medium, NodeId,
-    NodeKind, PhaseFunction, Precedence, Projection, Surface,
+    Action, Attributes, Bsdf, CutRule, Density, Emitter, Facets, Ir, Leaf, Material, Medium, NodeId, NodeKind,
+    PhaseFunction, Precedence, Sampler, Sampling, Surface,
 };
 
 impl Display for Ir {
@@ -292,34 +292,24 @@ fn open_surface<'a, 'b>(f: &'a mut Formatter<'b>, surface: &Surface) -> Result<C
     }
 }
 
-impl Display for Text<'_, Camera> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Camera { projection, eye, target, up, resolution: [width, height], filter } = self.0;
-        let call = match projection {
-            Projection::Perspective { fov } => Call::new(f, "perspective")?.float("fov", *fov)?,
-        };
-        call.point("eye", *eye)?
-            .point("target", *target)?
-            .point("up", *up)?
-            .arg("resolution", format_args!("[{width}, {height}]"))?
-            .arg("filter", Text(filter))?
-            .end()
+/// Leaves the call open for more; arguments that have their usual value are left out.
+fn sampling<'a, 'b>(call: Call<'a, 'b>, sampling: &Sampling) -> Result<Call<'a, 'b>, fmt::Error> {
+    let mut call = call.arg("samples", sampling.samples)?.arg("seed", sampling.seed)?;
+    if sampling.sampler != Sampler::Sobol {
+        call = call.arg("sampler", sampling.sampler.name())?;
+    }
+    if let Some(noise) = sampling.noise {
+        call = call.float("noise", noise)?;
+    }
+    match sampling.time_limit {
+        Some(seconds) => call.float("time_limit", seconds),
+        None => Ok(call),
     }
 }
 
-impl Display for Text<'_, Filter> {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match *self.0 {
-            Filter::Box { radius } => Call::new(f, "box")?.float("radius", radius)?.end(),
-            Filter::Tent { radius } => Call::new(f, "tent")?.float("radius", radius)?.end(),
-            Filter::Gaussian { radius, sigma } => {
-                Call::new(f, "gaussian")?.float("radius", radius)?.float("sigma", sigma)?.end()
-            }
-            Filter::Mitchell { radius, b, c } => {
-                Call::new(f, "mitchell")?.float("radius", radius)?.float("b", b)?.float("c", c)?.end()
-            }
-        }
-    }
+/// An argument that is there when it is true.
+fn flag<'a, 'b>(call: Call<'a, 'b>, name: &str, value: bool) -> Result<Call<'a, 'b>, fmt::Error> {
+    if value { call.arg(name, true) } else { Ok(call) }
 }
 
 /// A file of a display picture; 8 bit go without saying.
@@ -334,15 +324,20 @@ impl Display for Text<'_, Action> {
             Action::Accelerate { strategy } => Call::new(f, "accelerate")?.arg("strategy", strategy.name())?.end(),
             Action::BoundingBoxes => f.write_str("bounding_boxes()"),
             Action::CollectLights => f.write_str("collect_lights()"),
-            Action::PathTrace(trace) => Call::new(f, "path_trace")?
-                .arg("samples", trace.samples)?
+            Action::PathTrace(trace) => sampling(Call::new(f, "path_trace")?, &trace.sampling)
+                .and_then(|call| flag(call, "features", trace.features))?
                 .arg("max_depth", trace.max_depth)?
-                .arg("seed", trace.seed)?
                 .arg("wavelengths", Floats(&[trace.wavelengths.min_nm(), trace.wavelengths.max_nm()]))?
                 .float("band_nm", trace.band_nm)?
                 .arg("observer", trace.observer.name())?
                 .arg("polarised", trace.polarised)?
                 .end(),
+            Action::AmbientOcclusion { distance, sampling: of } => {
+                sampling(Call::new(f, "ambient_occlusion")?.float("distance", *distance)?, of)?.end()
+            }
+            Action::Preview { sampling: of, features } => {
+                flag(sampling(Call::new(f, "preview")?, of)?, "features", *features)?.end()
+            }
             Action::ToneMap { tone, slice_nm } => print_tone_map(f, tone, *slice_nm),
             Action::Image(action) => Text(action).fmt(f),
             Action::WriteExr { path } => Call::new(f, "write_exr")?.arg("path", Quoted(path))?.end(),

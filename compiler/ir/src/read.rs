@@ -10,14 +10,15 @@ use arsc_diagnostics::{SourceId, Span};
 use arsc_geometry::{ClosedMesh, DVec3, Shape, TriangleMesh};
 use arsc_spectral::{MerlBrdf, Observer, Raster, Spectrum, WavelengthRange};
 
-use crate::args::{Args, float, float_list, floats, index, integer};
+use crate::args::{Args, float, float_list, floats, index, integer, named};
+use crate::camera_text::read_camera;
 use crate::image_action::{image_action, tone_map};
 use crate::light_text::{environment, light};
 use crate::shape_text::shape;
 use crate::term::{Cursor, Fault, Term, TermKind};
 use crate::{
-    Action, ActionAt, Attributes, Bsdf, Camera, CutRule, Density, Distribution, Emitter, Facets, Filter, Ir, Leaf,
-    Material, MaterialId, Medium, Node, NodeId, NodeKind, PathTrace, PhaseFunction, Precedence, Projection, Strategy,
+    Action, ActionAt, Attributes, Bsdf, CutRule, Density, Distribution, Emitter, Facets, Ir, Leaf, Material,
+    MaterialId, Medium, Node, NodeId, NodeKind, PathTrace, PhaseFunction, Precedence, Sampler, Sampling, Strategy,
     Surface,
 };
 
@@ -134,7 +135,7 @@ fn statement(cursor: &mut Cursor, ir: &mut Ir, contents: &dyn Contents) -> Resul
             let root = cursor.term()?;
             ir.root = node_id(&root, ir)?;
         }
-        "camera" => ir.camera = Some(camera(cursor.term()?)?),
+        "camera" => ir.camera = Some(read_camera(cursor.term()?)?),
         "action" => {
             let action = action(cursor.term()?)?;
             let origin = span(cursor)?;
@@ -436,35 +437,21 @@ fn surface(args: &mut Args, contents: &dyn Contents) -> Result<Surface, Fault> {
     })
 }
 
-fn camera(term: Term) -> Result<Camera, Fault> {
-    let mut args = Args::new(term)?;
-    let projection = match args.name {
-        "perspective" => Projection::Perspective { fov: args.float("fov")? },
-        _ => return args.unknown("camera"),
-    };
-    let (eye, target, up) = (args.point("eye")?, args.point("target")?, args.point("up")?);
-    let resolution = args.take("resolution")?;
-    let resolution = match &resolution.kind {
-        TermKind::List(items) if items.len() == 2 => [integer(&items[0])?, integer(&items[1])?],
-        _ => return Err((resolution.offset, "expected `[width, height]`".to_owned())),
-    };
-    let filter = filter(args.take("filter")?)?;
-    args.end()?;
-    Ok(Camera { projection, eye, target, up, resolution, filter })
+fn sampling(args: &mut Args) -> Result<Sampling, Fault> {
+    let sampler = args.optional("sampler").map(|term| named(&term, &Sampler::ALL, Sampler::name)).transpose()?;
+    let optional = |args: &mut Args, name: &str| args.optional(name).map(|term| float(&term)).transpose();
+    Ok(Sampling {
+        samples: args.integer("samples")?,
+        seed: args.integer("seed")?,
+        sampler: sampler.unwrap_or_default(),
+        noise: optional(args, "noise")?,
+        time_limit: optional(args, "time_limit")?,
+    })
 }
 
-fn filter(term: Term) -> Result<Filter, Fault> {
-    let mut args = Args::new(term)?;
-    let radius = args.float("radius")?;
-    let filter = match args.name {
-        "box" => Filter::Box { radius },
-        "tent" => Filter::Tent { radius },
-        "gaussian" => Filter::Gaussian { radius, sigma: args.float("sigma")? },
-        "mitchell" => Filter::Mitchell { radius, b: args.float("b")?, c: args.float("c")? },
-        _ => return args.unknown("filter"),
-    };
-    args.end()?;
-    Ok(filter)
+/// An argument that may be left out where it is false.
+fn flag(args: &mut Args, name: &str) -> Result<bool, Fault> {
+    if args.rest.iter().any(|(given, _)| *given == Some(name)) { args.boolean(name) } else { Ok(false) }
 }
 
 fn action(term: Term) -> Result<Action, Fault> {
@@ -474,14 +461,18 @@ fn action(term: Term) -> Result<Action, Fault> {
         "bounding_boxes" => Action::BoundingBoxes,
         "collect_lights" => Action::CollectLights,
         "path_trace" => Action::PathTrace(PathTrace {
-            samples: args.integer("samples")?,
+            sampling: sampling(&mut args)?,
+            features: flag(&mut args, "features")?,
             max_depth: args.integer("max_depth")?,
-            seed: args.integer("seed")?,
             wavelengths: wavelengths(&args.take("wavelengths")?)?,
             band_nm: args.float("band_nm")?,
             observer: observer(&args.take("observer")?)?,
             polarised: args.boolean("polarised")?,
         }),
+        "ambient_occlusion" => {
+            Action::AmbientOcclusion { distance: args.float("distance")?, sampling: sampling(&mut args)? }
+        }
+        "preview" => Action::Preview { sampling: sampling(&mut args)?, features: flag(&mut args, "features")? },
         "tone_map" => {
             let (tone, slice_nm) = tone_map(&mut args)?;
             Action::ToneMap { tone, slice_nm }
@@ -508,14 +499,7 @@ fn sixteen_bit(args: &mut Args) -> Result<bool, Fault> {
 }
 
 fn strategy(term: &Term) -> Result<Strategy, Fault> {
-    let found = match term.kind {
-        TermKind::Word(word) => Strategy::ALL.into_iter().find(|strategy| strategy.name() == word),
-        _ => None,
-    };
-    found.ok_or_else(|| {
-        let names = Strategy::ALL.map(|strategy| format!("`{}`", strategy.name())).join(", ");
-        (term.offset, format!("expected one of {names}"))
-    })
+    named(term, &Strategy::ALL, Strategy::name)
 }
 
 fn wavelengths(term: &Term) -> Result<WavelengthRange, Fault> {
@@ -524,11 +508,7 @@ fn wavelengths(term: &Term) -> Result<WavelengthRange, Fault> {
 }
 
 fn observer(term: &Term) -> Result<Observer, Fault> {
-    let found = match term.kind {
-        TermKind::Word(word) => Observer::ALL.into_iter().find(|observer| observer.name() == word),
-        _ => None,
-    };
-    found.ok_or_else(|| (term.offset, "expected an observer".to_owned()))
+    named(term, &Observer::ALL, Observer::name)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! It runs between passes in debug and test builds, and on text that is read. A scene that analysis accepted verifies;
 //! a violation is a bug of the stage before (or a hand-written text).
 
+use std::f64::consts::PI;
 use std::fmt;
 
 use arsc_geometry::{DVec3, invert};
@@ -10,8 +11,8 @@ use arsc_spectral::Spectrum;
 
 use crate::image_action::is_valid_tone_map;
 use crate::{
-    Action, Attributes, Bsdf, Camera, CutRule, Density, Environment, Facets, Ir, Leaf, Light, Material, MaterialId,
-    Medium, NodeId, NodeKind, Parameter, PhaseFunction, Projection, Surface, Varying,
+    Action, Attributes, Bsdf, Camera, CutRule, Density, Environment, Facets, Focus, Ir, Leaf, Light, Material,
+    MaterialId, Medium, NodeId, NodeKind, Parameter, PhaseFunction, Projection, Surface, Varying,
 };
 
 /// Spectra nest at most this deep, so that everybody may recurse into them.
@@ -62,16 +63,7 @@ pub fn verify(ir: &Ir) -> Result<(), Vec<Violation>> {
         found.check(Err("there is no such node"), || format!("root %{}", ir.root.0));
     }
     for (i, at) in ir.actions.iter().enumerate() {
-        if let Action::PathTrace(trace) = &at.action {
-            let bands = require(positive(trace.band_nm), "the width of the bands is not positive and finite");
-            found.check(bands, || format!("action {i}"));
-        }
-        let picture = match &at.action {
-            Action::ToneMap { tone, slice_nm } => is_valid_tone_map(tone, *slice_nm),
-            Action::Image(action) => action.is_valid(),
-            _ => true,
-        };
-        found.check(require(picture, "a number is outside of what is allowed"), || format!("action {i}"));
+        found.check(check_action(&at.action), || format!("action {i}"));
     }
     if let Some(camera) = &ir.camera {
         found.check(check_camera(camera), || "camera".to_owned());
@@ -366,15 +358,57 @@ fn check_spectrum_at(spectrum: &Spectrum, depth: usize) -> Check {
     }
 }
 
-fn check_camera(camera: &Camera) -> Check {
-    let Camera { projection, eye, target, up, resolution, .. } = camera;
-    require(eye.is_finite() && target.is_finite() && up.is_finite(), "a position is not finite")?;
-    require((*target - *eye).cross(*up).length_squared() > 0.0, "the view direction and up do not span a plane")?;
-    require(resolution.iter().all(|&pixels| pixels > 0), "the image has no pixels")?;
-    match projection {
-        Projection::Perspective { fov } => {
-            require(*fov > 0.0 && *fov < std::f64::consts::PI, "the field of view is not in (0, pi)")
+fn check_action(action: &Action) -> Check {
+    let sampling = match action {
+        Action::PathTrace(trace) => {
+            require(positive(trace.band_nm), "the width of the bands is not positive and finite")?;
+            &trace.sampling
         }
+        Action::AmbientOcclusion { distance, sampling } => {
+            require(*distance > 0.0, "the distance is not positive")?;
+            sampling
+        }
+        Action::Preview { sampling, .. } => sampling,
+        Action::ToneMap { tone, slice_nm } => {
+            return require(is_valid_tone_map(tone, *slice_nm), "a number is outside of what is allowed");
+        }
+        Action::Image(action) => return require(action.is_valid(), "a number is outside of what is allowed"),
+        _ => return Ok(()),
+    };
+    let limits = [sampling.noise, sampling.time_limit];
+    require(limits.into_iter().flatten().all(positive), "a limit of samples is not positive and finite")
+}
+
+fn check_camera(camera: &Camera) -> Check {
+    let Camera { projection, eye, target, up, twist, fit, resolution, pixel_aspect, crop, .. } = camera;
+    let point = target.unwrap_or(*eye + up.any_orthogonal_vector());
+    require(eye.is_finite() && point.is_finite() && up.is_finite(), "a position is not finite")?;
+    require((point - *eye).cross(*up).length_squared() > 0.0, "the view direction and up do not span a plane")?;
+    require(resolution.iter().all(|&pixels| pixels > 0), "the image has no pixels")?;
+    require(twist.is_finite(), "the twist is not finite")?;
+    require(positive(*pixel_aspect), "the shape of pixels is not positive and finite")?;
+    require(fit.is_none_or(|margin| (0.0..1.0).contains(&margin)), "the margin is not in [0, 1)")?;
+    let within = |[left, top, right, bottom]: [f64; 4]| {
+        0.0 <= left && left < right && right <= 1.0 && 0.0 <= top && top < bottom && bottom <= 1.0
+    };
+    require(crop.is_none_or(within), "the crop is not within the picture")?;
+    let flat = |fov: f64| require(fov > 0.0 && fov < PI, "the field of view is not in (0, pi)");
+    match projection {
+        Projection::Perspective { fov, .. } => flat(*fov),
+        Projection::ThinLens { fov, lens, .. } => {
+            flat(*fov)?;
+            require(lens.radius >= 0.0 && lens.radius.is_finite(), "the radius of the lens is negative or not finite")?;
+            match lens.focus {
+                Focus::Distance(distance) => require(positive(distance), "the focus is not positive and finite"),
+                Focus::Point(point) => require(point.is_finite(), "the focus is not finite"),
+                Focus::Target => Ok(()),
+            }
+        }
+        Projection::Orthographic { extent, .. } => require(positive(*extent), "the extent is not positive and finite"),
+        Projection::Fisheye { fov, .. } => {
+            require(*fov > 0.0 && *fov <= 2.0 * PI, "the field of view is not in (0, 2 pi]")
+        }
+        Projection::Panorama => require(fit.is_none(), "a panorama shows all directions"),
     }
 }
 
@@ -420,6 +454,20 @@ mod tests {
                 "bsdf b1 = mirror(reflectance: tabulated(lambda_nm: [2.0, 1.0], values: [0.0, 0.0]))\n\
                  %0 = half_space() @0:0..1\nroot %0",
                 "b1: the wavelengths of a spectrum do not increase",
+            ),
+            (
+                "%0 = half_space() @0:0..1\nroot %0\ncamera fisheye(mapping: equal_area, fov: 6.3, eye: [0.0, 0.0, 0.0], \
+                 up: [0.0, 0.0, 1.0], resolution: [1, 1], filter: box(radius: 0.5))",
+                "camera: the field of view is not in (0, 2 pi]",
+            ),
+            (
+                "%0 = half_space() @0:0..1\nroot %0\ncamera panorama(eye: [0.0, 0.0, 0.0], up: [0.0, 0.0, 1.0], \
+                 resolution: [1, 1], crop: [0.5, 0.0, 0.5, 1.0], filter: box(radius: 0.5))",
+                "camera: the crop is not within the picture",
+            ),
+            (
+                "%0 = half_space() @0:0..1\nroot %0\naction preview(samples: 1, seed: 0, noise: 0.0) @0:0..1",
+                "action 0: a limit of samples is not positive and finite",
             ),
             (
                 "%0 = distant_light(irradiance: constant(1.0), direction: [0.0, 0.0, 2.0]) @0:0..1\nroot %0",

@@ -33,6 +33,9 @@ fn name(action: &Action) -> &'static str {
         Action::BoundingBoxes => "bounding_boxes",
         Action::CollectLights => "collect_lights",
         Action::PathTrace(_) => "path_trace",
+        Action::AmbientOcclusion { .. } => "ambient_occlusion",
+        Action::Preview { features: false, .. } => "preview",
+        Action::Preview { features: true, .. } => "render_features",
         Action::ToneMap { .. } => "tone_map",
         Action::WriteExr { .. } => "write_exr",
         Action::WritePng { .. } => "write_png",
@@ -80,7 +83,7 @@ fn no_picture_twice(actions: &[ActionAt]) -> Result<(), Box<Diagnostic>> {
 fn apply(stack: &mut Vec<Cell>, at: &ActionAt) -> Result<(), Box<Diagnostic>> {
     match at.action {
         Action::Accelerate { .. } | Action::BoundingBoxes | Action::CollectLights => top(stack, at, Cell::Scene)?,
-        Action::PathTrace(_) => {
+        Action::PathTrace(_) | Action::AmbientOcclusion { .. } | Action::Preview { .. } => {
             top(stack, at, Cell::Scene)?;
             stack.push(Cell::SpectralImage);
         }

@@ -33,7 +33,16 @@ pub fn reference() -> String {
     }
     section(&mut text, "Choices");
     line(&mut text, "Names that mean something where these types are wanted:\n");
-    for ty in [Type::Exposure, Type::Observer, Type::Strategy, Type::Distribution, Type::SkyModel] {
+    for ty in [
+        Type::Across,
+        Type::FisheyeMapping,
+        Type::Sampler,
+        Type::Exposure,
+        Type::Observer,
+        Type::Strategy,
+        Type::Distribution,
+        Type::SkyModel,
+    ] {
         let names: Vec<String> = choices(&ty).iter().map(|(name, _)| format!("`{name}`")).collect();
         line(&mut text, &format!("- `{ty}`: {}", names.join(", ")));
     }

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 
 use arsc_ir::{
-    Action, ActionAt, Attributes, Camera, Density, Distribution, Exposure, Filter, NodeId, Observer, PhaseFunction,
-    SkyModel, Spectrum, Strategy,
+    Across, Action, ActionAt, Attributes, Camera, Density, Distribution, Exposure, Filter, FisheyeMapping, NodeId,
+    Observer, PhaseFunction, Sampler, SkyModel, Spectrum, Strategy,
 };
 
 use crate::code::{Coercion, FnId};
@@ -43,6 +43,9 @@ pub enum Value {
     Density(Arc<Density>),
     Camera(Arc<Camera>),
     Filter(Arc<Filter>),
+    Across(Across),
+    FisheyeMapping(FisheyeMapping),
+    Sampler(Sampler),
     Action(Arc<ActionAt>),
     Exposure(Exposure),
     Observer(Observer),
@@ -210,6 +213,27 @@ impl Value {
         match self {
             Value::Filter(filter) => **filter,
             other => bug("a filter", other),
+        }
+    }
+
+    pub fn as_across(&self) -> Across {
+        match self {
+            Value::Across(across) => *across,
+            other => bug("what a field of view refers to", other),
+        }
+    }
+
+    pub fn as_fisheye_mapping(&self) -> FisheyeMapping {
+        match self {
+            Value::FisheyeMapping(mapping) => *mapping,
+            other => bug("a mapping of a fisheye", other),
+        }
+    }
+
+    pub fn as_sampler(&self) -> Sampler {
+        match self {
+            Value::Sampler(sampler) => *sampler,
+            other => bug("a sampler", other),
         }
     }
 

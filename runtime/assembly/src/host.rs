@@ -19,8 +19,9 @@ pub trait Host {
     /// A line for people: what an action prints.
     fn say(&self, line: &str);
 
-    /// A render of so many camera paths begins; the answer is told how it goes.
-    fn begin(&self, paths: u64) -> Box<dyn arsc_render::Progress + '_>;
+    /// A render of so many camera paths at most begins; the answer is told how it goes, and ends the render after
+    /// `time_limit` seconds.
+    fn begin(&self, paths: u64, time_limit: Option<f64>) -> Box<dyn arsc_render::Progress + '_>;
 
     /// Seconds since some fixed moment, for timings.
     fn seconds(&self) -> f64;

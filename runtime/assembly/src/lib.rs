@@ -13,6 +13,7 @@ mod materials;
 mod measure;
 mod measure_rays;
 mod pictures;
+mod rendering;
 mod sequence;
 mod settings;
 mod stage;
@@ -23,7 +24,8 @@ pub use error::AssemblyError;
 pub use host::{Host, HostError};
 pub use measure::{Measurement, measure};
 pub use measure_rays::{RayMeasurement, Sight, measure_rays};
-pub use sequence::{Outcome, RenderReport, actions, run};
+pub use rendering::RenderReport;
+pub use sequence::{Outcome, actions, run};
 pub use settings::Settings;
 
 /// The geometry of a scene in normal form, built for tracing.

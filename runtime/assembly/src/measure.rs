@@ -2,7 +2,7 @@
 
 use arsc_accel::BuildStats;
 use arsc_ir::{Action, Ir};
-use arsc_render::{Camera, PathTraceSettings, World, path_trace};
+use arsc_render::{Camera, PathTraceSettings, Sampling, World, path_trace};
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -29,25 +29,28 @@ pub fn measure(ir: &Ir, settings: &Settings, host: &dyn Host, seconds: f64) -> R
     let stage = Stage::new(ir, settings, host)?;
     let strategy = settings.strategy.unwrap_or_default();
     let world = stage.world(strategy)?;
-    let camera = stage.camera(strategy)?;
-    let pixels = settings.pixels(camera.resolution())? as f64;
+    let (camera, crop) = stage.camera(strategy)?;
+    let pixels = settings.pixels(camera.resolution(), crop)? as f64;
     let mut hits = 0;
     let rays = repeat(host, seconds, |_| hits = stage.pool.install(|| trace_pixels(&world, &camera)));
-    let mut base = PathTraceSettings { samples: 4, ..PathTraceSettings::default() };
+    let sampling = |seed| Sampling { samples: SAMPLES, seed, ..Sampling::default() };
+    let mut base = PathTraceSettings::default();
     let first = sequence::actions(ir, "").into_iter().find(|action| matches!(action, Action::PathTrace(_)));
     if let Some(Action::PathTrace(trace)) = first {
         (base.max_depth, base.polarised) = (trace.max_depth, trace.polarised);
     }
     base.max_depth = settings.max_depth.unwrap_or(base.max_depth);
     let paths = repeat(host, seconds, |round| {
-        stage.pool.install(|| path_trace(&world, &camera, &PathTraceSettings { seed: round, ..base.clone() }, &()));
+        stage.pool.install(|| {
+            path_trace(&world, &camera, &PathTraceSettings { sampling: sampling(round), ..base.clone() }, &())
+        });
     });
     Ok(Measurement {
         scene: *world.geometry.stats(),
         build_seconds: stage.build_seconds(),
         camera_rays_per_second: rays * pixels,
         hit_share: hits as f64 / pixels,
-        samples_per_second: paths * pixels * f64::from(base.samples),
+        samples_per_second: paths * pixels * f64::from(SAMPLES),
         threads: stage.pool.current_num_threads(),
     })
 }
@@ -67,6 +70,9 @@ fn repeat(host: &dyn Host, seconds: f64, mut work: impl FnMut(u64)) -> f64 {
     }
 }
 
+/// Paths per pixel and round.
+const SAMPLES: u32 = 4;
+
 /// Ends a measurement whose clock stands still.
 const MOST_ROUNDS: u64 = 1_000_000;
 
@@ -75,7 +81,7 @@ fn trace_pixels(world: &World, camera: &Camera) -> usize {
     let row = |y: u32| {
         let hits = |x: &u32| {
             let center = DVec2::new(f64::from(*x) + 0.5, f64::from(y) + 0.5);
-            world.geometry.intersect(&camera.ray(center)).is_some()
+            camera.ray(center).is_some_and(|ray| world.geometry.intersect(&ray).is_some())
         };
         (0..width).filter(hits).count()
     };

@@ -74,8 +74,8 @@ pub fn measure_rays(
     let strategy = settings.strategy.unwrap_or_default();
     let world = stage.world(strategy)?;
     let scene = &world.geometry;
-    let camera = stage.camera(strategy)?;
-    let pixels = settings.pixels(camera.resolution())? as usize;
+    let (camera, crop) = stage.camera(strategy)?;
+    let pixels = settings.pixels(camera.resolution(), crop)? as usize;
     let mut measured = RayMeasurement {
         scene: *scene.stats(),
         resolution: camera.resolution(),
@@ -100,9 +100,10 @@ fn trace(scene: &Scene, camera: &Camera, light: DVec3, sights: &mut [Sight]) -> 
         for left in (0..width).step_by(BLOCK as usize) {
             for y in top..height.min(top + BLOCK) {
                 for x in left..width.min(left + BLOCK) {
-                    let ray = camera.ray(center(x, y));
                     let mut sight = Sight::Nothing;
-                    if let Some(hit) = scene.intersect(&ray) {
+                    if let Some(ray) = camera.ray(center(x, y))
+                        && let Some(hit) = scene.intersect(&ray)
+                    {
                         sight = Sight::Dark;
                         let to_light = light - hit.p;
                         // The side that the ray came from is the one that is seen.
@@ -131,7 +132,7 @@ pub fn tests_per_ray(scene: &Scene, camera: &Camera) -> f64 {
     let [width, height] = camera.resolution();
     let pixels = (width * height) as usize;
     let step = pixels.div_ceil(COUNTED).max(1);
-    let tests = |i: usize| scene.count_tests(&camera.ray(center(i as u32 % width, i as u32 / width)));
-    let total: u64 = (0..pixels).step_by(step).map(|i| u64::from(tests(i))).sum();
+    let ray = |i: usize| camera.ray(center(i as u32 % width, i as u32 / width));
+    let total: u64 = (0..pixels).step_by(step).filter_map(ray).map(|ray| u64::from(scene.count_tests(&ray))).sum();
     total as f64 / pixels.div_ceil(step) as f64
 }

@@ -10,10 +10,10 @@ use std::sync::Arc;
 
 use arsc_image::{Depth, DisplayImage, SpectralImage};
 use arsc_ir::{Action, ImageAction, Ir, PathTrace, ToneMap};
-use arsc_render::{Bands, PathTraceSettings, path_trace};
 
+use crate::rendering::RenderReport;
 use crate::stage::{Stage, accel_strategy};
-use crate::{AssemblyError, Host, Settings, measure_rays, pictures};
+use crate::{AssemblyError, Host, Settings, pictures};
 
 /// What a run of the sequence gave.
 #[derive(Clone, Debug, Default)]
@@ -23,24 +23,6 @@ pub struct Outcome {
     pub renders: Vec<RenderReport>,
     /// Somebody asked for an early end.
     pub interrupted: bool,
-}
-
-/// One `path_trace`.
-#[derive(Clone, Debug)]
-pub struct RenderReport {
-    pub strategy: arsc_accel::Strategy,
-    /// Building the scene for tracing.
-    pub build_seconds: f64,
-    /// What was built.
-    pub scene: arsc_accel::BuildStats,
-    /// Mean over camera rays, if it was asked for.
-    pub tests_per_ray: Option<f64>,
-    pub seconds: f64,
-    pub camera_paths: u64,
-    /// Samples per pixel, fewest and most.
-    pub samples: (u32, u32),
-    /// Samples that were not finite or negative and were left out.
-    pub rejected: u64,
 }
 
 /// What lies on the stack.
@@ -94,13 +76,13 @@ pub fn run(ir: &Ir, settings: &Settings, host: &dyn Host) -> Result<Outcome, Ass
     Ok(machine.outcome)
 }
 
-struct Machine<'a> {
-    stage: Stage<'a>,
-    settings: &'a Settings,
-    host: &'a dyn Host,
+pub(crate) struct Machine<'a> {
+    pub stage: Stage<'a>,
+    pub settings: &'a Settings,
+    pub host: &'a dyn Host,
     /// The top is the last.
-    stack: Vec<Item>,
-    outcome: Outcome,
+    pub stack: Vec<Item>,
+    pub outcome: Outcome,
 }
 
 impl Machine<'_> {
@@ -122,6 +104,8 @@ impl Machine<'_> {
                 self.stage.say_lights(strategy)?;
             }
             Action::PathTrace(trace) => return self.path_trace(trace),
+            Action::AmbientOcclusion { distance, sampling } => return self.ambient_occlusion(*distance, sampling),
+            Action::Preview { sampling, features } => return self.preview(sampling, *features),
             Action::WriteExr { path } => {
                 let bytes = arsc_image::encode_exr(&*self.spectral("write_exr")?)?;
                 self.write(path, &bytes)?;
@@ -171,76 +155,6 @@ impl Machine<'_> {
         Ok(())
     }
 
-    /// Renders as the script asks, but for what the run asks otherwise.
-    fn path_trace(&mut self, trace: &PathTrace) -> Result<bool, AssemblyError> {
-        let strategy = self.scene("path_trace")?;
-        let camera = self.stage.camera(strategy)?;
-        let settings = PathTraceSettings {
-            samples: self.settings.samples.unwrap_or(trace.samples),
-            max_depth: self.settings.max_depth.unwrap_or(trace.max_depth),
-            seed: self.settings.seed.unwrap_or(trace.seed),
-            crop: self.settings.crop,
-            wavelengths: trace.wavelengths,
-            bands: Bands::over(&trace.wavelengths, trace.band_nm, trace.observer),
-            polarised: trace.polarised,
-        };
-        self.settings.check_film(camera.resolution(), &settings.bands, settings.polarised)?;
-        let world = self.stage.world_for(strategy, &trace.wavelengths)?;
-        let progress = self.host.begin(u64::from(settings.samples) * self.settings.pixels(camera.resolution())?);
-        let start = self.host.seconds();
-        let film = self.stage.pool.install(|| path_trace(&world, &camera, &settings, &*progress));
-        let seconds = self.host.seconds() - start;
-        self.outcome.interrupted |= progress.cancelled();
-        drop(progress);
-        let count = || measure_rays::tests_per_ray(&world.geometry, &camera);
-        let report = RenderReport {
-            strategy,
-            tests_per_ray: self.settings.statistics.then(count),
-            build_seconds: self.stage.build_seconds(),
-            scene: *world.geometry.stats(),
-            seconds,
-            camera_paths: film.paths(),
-            samples: film.samples_per_pixel(),
-            rejected: film.rejected(),
-        };
-        let is_empty = report.samples.1 == 0;
-        let mut image = film.to_image();
-        image.metadata = self.metadata(&settings, strategy, &report);
-        self.outcome.renders.push(report);
-        self.stack.push(Item::Spectral(Arc::new(image)));
-        Ok(!is_empty)
-    }
-
-    fn metadata(
-        &self,
-        settings: &PathTraceSettings,
-        strategy: arsc_accel::Strategy,
-        report: &RenderReport,
-    ) -> Vec<(String, String)> {
-        let (fewest, most) = report.samples;
-        let samples = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
-        let mut metadata = self.settings.metadata.clone();
-        let mut add = |name: &str, value: String| metadata.push((name.to_owned(), value));
-        add("seed", settings.seed.to_string());
-        add("samples", samples);
-        add("maxDepth", settings.max_depth.to_string());
-        add("csg", strategy.name().to_owned());
-        let (first, last) = (settings.wavelengths.min_nm(), settings.wavelengths.max_nm());
-        add("wavelengths", format!("{first}nm to {last}nm"));
-        add("observer", settings.bands.observer.name().to_owned());
-        if let Some([x0, y0, x1, y1]) = settings.crop {
-            add("crop", format!("{x0},{y0},{x1},{y1}"));
-        }
-        if most < settings.samples {
-            add("interrupted", format!("after {most} of {} samples", settings.samples));
-        }
-        if self.settings.timings {
-            add("buildSeconds", format!("{:.3}", report.build_seconds));
-            add("renderSeconds", format!("{:.3}", report.seconds));
-        }
-        metadata
-    }
-
     fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), AssemblyError> {
         let written =
             self.host.write(name, bytes).map_err(|source| AssemblyError::Write { name: name.to_owned(), source })?;
@@ -248,7 +162,8 @@ impl Machine<'_> {
         Ok(())
     }
 
-    fn scene(&self, action: &'static str) -> Result<arsc_accel::Strategy, AssemblyError> {
+    /// The scene on top of the stack.
+    pub fn scene(&self, action: &'static str) -> Result<arsc_accel::Strategy, AssemblyError> {
         match self.stack.last() {
             Some(Item::Scene(strategy)) => Ok(*strategy),
             other => Err(mismatch(action, "a scene", other)),

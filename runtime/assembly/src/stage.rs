@@ -81,13 +81,25 @@ impl<'a> Stage<'a> {
         self.built.borrow().as_ref().map_or(0.0, |built| built.seconds)
     }
 
-    /// The script's camera, or one that frames the bounds of the scene.
-    pub fn camera(&self, strategy: Strategy) -> Result<Camera, AssemblyError> {
+    /// The script's camera, or one that frames the bounds of the scene, and the pixels x0, y0, x1, y1 to render if not
+    /// all.
+    pub fn camera(&self, strategy: Strategy) -> Result<(Camera, Option<[u32; 4]>), AssemblyError> {
         let resolution = self.settings.resolution;
-        match &self.ir.camera {
-            Some(camera) => Ok(camera::lower(camera, resolution)),
-            None => Ok(camera::lower(&camera::framing(&self.world(strategy)?.geometry.bounds()), resolution)),
-        }
+        let (camera, crop) = match &self.ir.camera {
+            Some(camera) => {
+                let bounds = if camera::needs_bounds(camera) {
+                    self.world(strategy)?.geometry.bounded_parts()
+                } else {
+                    Aabb::EMPTY
+                };
+                camera::lower(camera, resolution, &bounds)
+            }
+            None => {
+                let bounds = self.world(strategy)?.geometry.bounds();
+                camera::lower(&camera::framing(&bounds), resolution, &bounds)
+            }
+        };
+        Ok((camera, self.settings.crop.or(crop)))
     }
 
     /// Prints the bounds of the scene.

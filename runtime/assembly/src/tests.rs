@@ -8,7 +8,7 @@ use arsc_diagnostics::{SourceId, Span};
 use arsc_geometry::{ClosedMesh, DAffine3, DVec3, TriangleMesh};
 use arsc_ir::{
     Action, ActionAt, Attributes, Bsdf, Builder, Emitter, Environment, Exposure, Ir, NodeId, NodeKind, PathTrace,
-    Precedence, Shape, Spectrum, Surface, ToneMap,
+    Precedence, Sampling, Shape, Spectrum, Surface, ToneMap,
 };
 
 use crate::{AssemblyError, Host, HostError, Outcome, Settings, run};
@@ -40,7 +40,7 @@ impl Host for Memory {
         self.said.lock().unwrap().push(line.to_owned());
     }
 
-    fn begin(&self, _: u64) -> Box<dyn arsc_render::Progress + '_> {
+    fn begin(&self, _: u64, _: Option<f64>) -> Box<dyn arsc_render::Progress + '_> {
         Box::new(Flag(self.cancelled))
     }
 
@@ -140,7 +140,11 @@ fn a_crop_gives_the_pixels_of_the_whole_picture() {
 
 #[test]
 fn stack_words_do_what_they_say() {
-    let trace = Action::PathTrace(PathTrace { samples: 1, max_depth: 3, seed: 9, ..PathTrace::default() });
+    let trace = Action::PathTrace(PathTrace {
+        sampling: Sampling { seed: 9, ..Sampling::of(1) },
+        max_depth: 3,
+        ..PathTrace::default()
+    });
     let exr = |name: &str| Action::WriteExr { path: name.into() };
     let tone_map =
         Action::ToneMap { tone: ToneMap { exposure: Exposure::Ev(0.0), ..ToneMap::default() }, slice_nm: None };

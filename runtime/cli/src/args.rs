@@ -47,6 +47,39 @@ pub fn resolution(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
+/// Seconds: `90`, `90s`, `1.5min`, `1h30m`.
+pub fn duration(text: &str) -> Result<f64, String> {
+    let mut seconds = 0.0;
+    let mut rest = text.trim();
+    while !rest.is_empty() {
+        let digits = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
+        let (number, behind) = rest.split_at(digits);
+        let letters = behind.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(behind.len());
+        let (unit, behind) = behind.split_at(letters);
+        let factor = match unit {
+            "s" | "" => 1.0,
+            "m" | "min" => 60.0,
+            "h" => 3600.0,
+            _ => f64::NAN,
+        };
+        seconds += number.parse::<f64>().map_or(f64::NAN, |number| number * factor);
+        rest = behind.trim_start();
+    }
+    if seconds > 0.0 && seconds.is_finite() {
+        Ok(seconds)
+    } else {
+        Err("expected a time, for example 60s, 5min or 1h30m".into())
+    }
+}
+
+/// A share above 0, at most 1: `0.01` or `1%`.
+pub fn noise(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let (number, factor) = text.strip_suffix('%').map_or((text, 1.0), |number| (number.trim(), 0.01));
+    let share = number.parse::<f64>().map(|number| number * factor);
+    share.ok().filter(|share| *share > 0.0 && *share <= 1.0).ok_or("expected a share, for example 0.01 or 1%".into())
+}
+
 /// Bytes: a number with K, M, G or T (thousands) behind it, or nothing.
 pub fn size(text: &str) -> Result<usize, String> {
     let text = text.trim().trim_end_matches(['B', 'b']);
@@ -77,6 +110,11 @@ mod tests {
 
     #[test]
     fn values_are_read_and_slips_refused() {
+        let times = [("90", 90.0), ("1.5 min", 90.0), ("1h30m", 5400.0), ("2min 5s", 125.0)];
+        let _ = times.map(|(text, seconds)| assert_eq!(duration(text), Ok(seconds), "{text}"));
+        let _ = ["", "0s", "-3s", "s", "3d", "1.2.3s", "inf"].map(|text| assert!(duration(text).is_err(), "{text}"));
+        assert_eq!([noise("0.01"), noise("2 %")], [Ok(0.01), Ok(0.02)]);
+        let _ = ["0", "-1%", "2", "NaN", "%"].map(|text| assert!(noise(text).is_err(), "{text}"));
         assert_eq!(resolution("640x480"), Ok([640, 480]));
         for slip in ["640", "0x10", "640x", "x480", "-1x5", "99999x2", "1e3x2"] {
             assert!(resolution(slip).is_err(), "{slip}");

@@ -53,8 +53,8 @@ impl Host for Machine<'_> {
         eprintln!("{line}");
     }
 
-    fn begin(&self, paths: u64) -> Box<dyn arsc_render::Progress + '_> {
-        Box::new(Progress::new(paths, self.quiet))
+    fn begin(&self, paths: u64, time_limit: Option<f64>) -> Box<dyn arsc_render::Progress + '_> {
+        Box::new(Progress::new(paths, time_limit, self.quiet))
     }
 
     fn seconds(&self) -> f64 {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use arsc_assembly::{Outcome, Settings};
+use arsc_assembly::{Outcome, RenderReport, Settings};
 use arsc_ir::{Action, Ir};
 
 use crate::args::{self, SceneArgs};
@@ -11,6 +11,7 @@ use crate::exit::Exit;
 use crate::failure::failure;
 use crate::files::{Output, ScriptFolder};
 use crate::host::Machine;
+use crate::progress::{percent, seconds};
 use crate::{bug, interrupt, statistics};
 
 /// How CSG is traced; all give the same picture.
@@ -53,9 +54,17 @@ pub struct RenderSettings {
     #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
 
-    /// Samples per pixel
+    /// Samples per pixel; with --noise or --time, at most
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
     pub samples: Option<u32>,
+
+    /// Goes on until the relative noise of pixels is this, such as 0.01 or 1%; quiet parts get fewer samples
+    #[arg(long, value_name = "SHARE", value_parser = args::noise, allow_hyphen_values = true)]
+    pub noise: Option<f64>,
+
+    /// Ends each render after this time, such as 60s or 5min; the picture then depends on the machine
+    #[arg(long, value_name = "TIME", value_parser = args::duration, allow_hyphen_values = true)]
+    pub time: Option<f64>,
 
     /// Largest number of scattering events of a path
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), allow_negative_numbers = true)]
@@ -98,6 +107,8 @@ impl RenderSettings {
     pub fn to_settings(&self) -> Settings {
         Settings {
             samples: self.samples,
+            noise: self.noise,
+            time_limit: self.time,
             max_depth: self.max_depth,
             seed: self.seed,
             resolution: self.resolution,
@@ -173,7 +184,11 @@ fn settings(args: &Args, scene: &Scene) -> Settings {
 }
 
 fn script_seed(ir: &Ir) -> u64 {
-    let seed = |action: &Action| if let Action::PathTrace(trace) = action { Some(trace.seed) } else { None };
+    let seed = |action: &Action| match action {
+        Action::PathTrace(trace) => Some(trace.sampling.seed),
+        Action::AmbientOcclusion { sampling, .. } | Action::Preview { sampling, .. } => Some(sampling.seed),
+        _ => None,
+    };
     ir.actions.iter().find_map(|at| seed(&at.action)).unwrap_or(0)
 }
 
@@ -211,6 +226,17 @@ fn foreign_picture(path: &Path) -> Option<String> {
     (is_known && !path.is_dir()).then_some(kind)
 }
 
+/// How many samples a render took that decided so itself.
+fn say_samples(render: &RenderReport, args: &Args) {
+    let (fewest, most) = render.samples;
+    if fewest == most && args.settings.noise.is_none() && args.settings.time.is_none() {
+        return;
+    }
+    let samples = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
+    let noise = render.noise.map_or(String::new(), |noise| format!(", noise {}", percent(noise)));
+    eprintln!("{samples} samples per pixel in {}{noise}", seconds(render.seconds));
+}
+
 fn conclude(args: &Args, outcome: &Outcome) -> Exit {
     if let Some(format) = args.stats {
         statistics::print(outcome, format);
@@ -220,6 +246,7 @@ fn conclude(args: &Args, outcome: &Outcome) -> Exit {
         eprintln!("warning: {rejected} samples were not finite or negative and were left out");
     }
     if !args.quiet {
+        outcome.renders.iter().for_each(|render| say_samples(render, args));
         for path in &outcome.written {
             println!("wrote {}", path.display());
         }

@@ -3,7 +3,7 @@
 use arsc_assembly::{Outcome, RenderReport};
 use serde::Serialize;
 
-use crate::progress::{count, seconds};
+use crate::progress::{count, percent, seconds};
 
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -30,6 +30,11 @@ struct Statistics {
     prepare_seconds: f64,
     render_seconds: f64,
     camera_paths: u64,
+    /// Per pixel.
+    fewest_samples: u32,
+    most_samples: u32,
+    /// Relative, of the picture.
+    noise: Option<f64>,
     samples_per_second: f64,
 }
 
@@ -53,6 +58,9 @@ impl Statistics {
             prepare_seconds: render.build_seconds,
             render_seconds: render.seconds,
             camera_paths: render.camera_paths,
+            fewest_samples: render.samples.0,
+            most_samples: render.samples.1,
+            noise: render.noise,
             samples_per_second: render.camera_paths as f64 / render.seconds.max(1e-9),
         }
     }
@@ -73,6 +81,10 @@ impl Statistics {
         eprintln!("render         {}", seconds(self.render_seconds));
         let (paths, rate) = (count(self.camera_paths as f64), count(self.samples_per_second));
         eprintln!("camera paths   {paths} ({rate} samples/s)");
+        eprintln!("samples        {} to {} per pixel", self.fewest_samples, self.most_samples);
+        if let Some(noise) = self.noise {
+            eprintln!("noise          {}", percent(noise));
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use arsc_accel::{
     BuildOptions, Csg, CsgLeaf, MaterialIndex, Scene, SceneGeometry, Shape, Solid, Surface, SurfaceShape,
 };
 use arsc_render::{
-    AreaEmitter, Bsdf, Camera, Environment, FilterShape, Material, PathTraceSettings, ReconstructionFilter,
+    AreaEmitter, Bsdf, Camera, Environment, FilterShape, Material, PathTraceSettings, ReconstructionFilter, Sampling,
     SkySettings, World, path_trace,
 };
 use arsc_spectral::{Spectrum, uplift_rgb};
@@ -97,7 +97,8 @@ fn camera(eye: DVec3, target: DVec3) -> Camera {
 
 fn paths(criterion: &mut Criterion) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    let settings = PathTraceSettings { samples: SAMPLES, max_depth: 16, ..PathTraceSettings::default() };
+    let sampling = Sampling { samples: SAMPLES, ..Sampling::default() };
+    let settings = PathTraceSettings { sampling, max_depth: 16, ..PathTraceSettings::default() };
     let mut group = criterion.benchmark_group("path_trace");
     group.sampling_mode(SamplingMode::Flat).sample_size(10);
     group.throughput(Throughput::Elements(u64::from(PIXELS * PIXELS * SAMPLES)));

@@ -3,13 +3,16 @@
 //! Per pixel: for every spectral band the sum of weighted radiance estimates and the sum of the estimates' weights, and
 //! the sum of the observer's XYZ with the number of samples. A path gives four estimates, one per wavelength; each enters the
 //! band that it falls into. Radiance of a band is the ratio of its two sums (so the random number of samples per band
-//! cancels), XYZ is sum over count. Sums of films of disjoint samples add: films merge.
+//! cancels), XYZ is sum over the sum of the filter's weights; for filters with negative lobes bands are scaled by samples over
+//! weights likewise, so that a constant picture is constant. Sums of films of disjoint samples add: films merge.
 //! Pixels are stored tile by tile, so that threads own what they write. Values that are not finite or negative are
 //! counted and left out. Polarised films keep sums of the Stokes parameters S1 to S3 per band as well.
+//! How noisy the luminance is, [`crate::noise`] tells.
 
-use arsc_image::SpectralImage;
-use arsc_spectral::{LUMINOUS_EFFICACY, Observer, SampledWavelengths, WavelengthRange};
+use arsc_image::{Channel, SpectralImage};
+use arsc_spectral::{LUMINOUS_EFFICACY, Observer, SampledSpectrum, SampledWavelengths, WavelengthRange};
 
+use crate::noise::{LuminanceMoments, NoiseMap, TileNoise, limited_weight};
 use crate::polarisation::Stokes;
 
 /// Side of a tile in pixels.
@@ -84,6 +87,9 @@ pub struct Tile {
     stokes: Vec<[f32; 3]>,
     xyz: Vec<[f64; 3]>,
     samples: Vec<u32>,
+    /// Sums of the filter's weights.
+    weights: Vec<f64>,
+    luminance: Vec<LuminanceMoments>,
     rejected: u64,
 }
 
@@ -101,6 +107,8 @@ impl Tile {
             stokes: vec![[0.0; 3]; if polarised { pixels * bands.count } else { 0 }],
             xyz: vec![[0.0; 3]; pixels],
             samples: vec![0; pixels],
+            weights: vec![0.0; pixels],
+            luminance: vec![LuminanceMoments::default(); pixels],
             rejected: 0,
         }
     }
@@ -124,6 +132,7 @@ impl Tile {
         let inverse_pdf_lanes = inverse_pdf;
         let inverse_pdf = inverse_pdf.to_array();
         let matching = self.observer.matching_functions();
+        let mut luminance = 0.0;
         for i in 0..4 {
             if let Some(band) = self.band_index.of(lambda[i]) {
                 let [sum, sum_of_weights] = &mut self.sums[row + band];
@@ -134,7 +143,10 @@ impl Tile {
             let estimate = f64::from(estimates[i]);
             let total = &mut self.xyz[pixel];
             *total = [total[0] + x * estimate, total[1] + y * estimate, total[2] + z * estimate];
+            luminance += y * estimate;
         }
+        self.luminance[pixel].add(luminance, weight);
+        self.weights[pixel] += weight;
         self.samples[pixel] += 1;
         if let Some(polarisation) = polarisation {
             let [s1, s2, s3] = polarisation.map(|s| (s.0 * inverse_pdf_lanes * weight as f32).to_array());
@@ -157,6 +169,36 @@ impl Tile {
             fill_bands(&sums.collect::<Vec<_>>(), &mut mean);
             bands.iter_mut().zip(&mean).for_each(|(band, mean)| band[parameter] = *mean);
         }
+    }
+
+    /// Adds samples of a range of numbers to all pixels; `sample` gives wavelengths, radiance and the filter's weight.
+    pub(crate) fn for_each_sample(
+        &mut self,
+        samples: std::ops::Range<u32>,
+        sample: impl Fn([u32; 2], u32) -> (SampledWavelengths, SampledSpectrum, f64),
+    ) {
+        for y in 0..self.height {
+            for x in 0..self.width {
+                for index in samples.clone() {
+                    let (wavelengths, radiance, weight) = sample([self.x0 + x, self.y0 + y], index);
+                    self.add(x, y, &wavelengths, &radiance, weight);
+                }
+            }
+        }
+    }
+
+    /// Pixels.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
+    /// The luminance of the tile and the noise of its pixels; `None` while there are too few samples to tell.
+    pub(crate) fn noise(&self) -> Option<TileNoise> {
+        let mut tile = TileNoise::default();
+        for (moments, samples) in self.luminance.iter().zip(&self.samples) {
+            tile.add(moments, *samples)?;
+        }
+        Some(tile)
     }
 
     /// Samples of the pixel with the most.
@@ -204,6 +246,17 @@ impl Film {
         self.resolution
     }
 
+    /// Tiles in a row.
+    pub(crate) fn columns(&self) -> usize {
+        self.tiles.iter().take_while(|tile| tile.y0 == self.tiles[0].y0).count()
+    }
+
+    /// Relative noise of the picture ([`crate::noise`]): the median of its tiles; `None` with fewer than
+    /// eight samples in some pixel, or without light that the observer sees.
+    pub fn noise(&self) -> Option<f64> {
+        NoiseMap::new(&self.tiles.iter().map(Tile::noise).collect::<Vec<_>>(), self.columns()).of_picture()
+    }
+
     /// Bytes that a film of these pixels and its picture take, so that a caller can refuse what does not fit.
     pub fn bytes(resolution: [u32; 2], crop: Option<[u32; 4]>, bands: &Bands, polarised: bool) -> u64 {
         let area = |width: u32, height: u32| u64::from(width) * u64::from(height);
@@ -211,7 +264,7 @@ impl Film {
         let covered = area(x1.min(resolution[0]).saturating_sub(x0), y1.min(resolution[1]).saturating_sub(y0));
         let n = bands.count as u64;
         let stokes = if polarised { n * 12 } else { 0 };
-        let (sums, picture) = (n * 8 + 24 + 4 + stokes, n * 4 + 12 + stokes);
+        let (sums, picture) = (n * 8 + 24 + 4 + 8 + 56 + stokes, n * 4 + 12 + 8 + stokes);
         covered.saturating_mul(sums).saturating_add(area(resolution[0], resolution[1]).saturating_mul(picture))
     }
 
@@ -236,6 +289,12 @@ impl Film {
             for (samples, more) in tile.samples.iter_mut().zip(&more.samples) {
                 *samples += more;
             }
+            for (weights, more) in tile.weights.iter_mut().zip(&more.weights) {
+                *weights += more;
+            }
+            for (moments, more) in tile.luminance.iter_mut().zip(&more.luminance) {
+                moments.merge(more);
+            }
             tile.rejected += more.rejected;
         }
         Ok(())
@@ -257,7 +316,9 @@ impl Film {
         (counts().min().unwrap_or(0), counts().max().unwrap_or(0))
     }
 
-    /// The picture. Pixels without samples are black. A band that no sample has hit yet, as happens below some
+    /// The picture, with the number of samples and the variance of the luminance as channels `samples.N` and `variance.Y`
+    /// ([`crate::noise`]; the latter only where all covered pixels have eight samples at least). Pixels without samples
+    /// are black. A band that no sample has hit yet, as happens below some
     /// sixteen samples, is interpolated linearly between its neighbours.
     pub fn to_image(&self) -> SpectralImage {
         let (width, height) = (self.resolution[0] as usize, self.resolution[1] as usize);
@@ -265,16 +326,27 @@ impl Film {
         let mut radiance = vec![0.0; width * height * n];
         let mut stokes = if self.polarised { vec![[0.0; 3]; width * height * n] } else { Vec::new() };
         let mut xyz = vec![[0.0; 3]; width * height];
+        let mut samples = vec![0.0; width * height];
+        let mut variance = vec![Some(0.0); width * height];
         for tile in &self.tiles {
             for pixel in 0..tile.samples.len() {
                 let (x, y) = (pixel % tile.width as usize, pixel / tile.width as usize);
                 let at = (tile.y0 as usize + y) * width + tile.x0 as usize + x;
-                fill_bands(&tile.sums[pixel * n..(pixel + 1) * n], &mut radiance[at * n..(at + 1) * n]);
+                let bands = at * n..(at + 1) * n;
+                fill_bands(&tile.sums[pixel * n..(pixel + 1) * n], &mut radiance[bands.clone()]);
                 if self.polarised {
-                    tile.fill_stokes(pixel, &mut stokes[at * n..(at + 1) * n]);
+                    tile.fill_stokes(pixel, &mut stokes[bands.clone()]);
                 }
-                let k = 0.25 * LUMINOUS_EFFICACY / f64::from(tile.samples[pixel].max(1));
+                let count = f64::from(tile.samples[pixel]);
+                let weight = limited_weight(tile.weights[pixel], tile.samples[pixel].max(1));
+                // One, but for filters with negative lobes.
+                let per_weight = (count / weight) as f32;
+                radiance[bands.clone()].iter_mut().for_each(|r| *r *= per_weight);
+                stokes.get_mut(bands).into_iter().flatten().for_each(|s| *s = s.map(|s| s * per_weight));
+                let k = 0.25 * LUMINOUS_EFFICACY / weight;
                 xyz[at] = tile.xyz[pixel].map(|sum| (sum * k) as f32);
+                samples[at] = tile.samples[pixel] as f32;
+                variance[at] = tile.luminance[pixel].variance_of_mean(tile.samples[pixel]).map(|v| v as f32);
             }
         }
         let stokes = self.polarised.then_some(stokes);
@@ -286,10 +358,19 @@ impl Film {
             radiance,
             stokes,
             xyz,
-            channels: Vec::new(),
+            channels: statistics(samples, variance),
             metadata: Vec::new(),
         }
     }
+}
+
+/// The statistics of pixels as channels; an unknown variance leaves out that channel.
+fn statistics(samples: Vec<f32>, variance: Vec<Option<f32>>) -> Vec<Channel> {
+    let mut channels = vec![Channel { name: "samples.N".into(), samples }];
+    if let Some(samples) = variance.into_iter().collect() {
+        channels.push(Channel { name: "variance.Y".into(), samples });
+    }
+    channels
 }
 
 /// Ratios of the sums; empty bands between filled ones are interpolated, at the ends repeated. All zero without any.
@@ -316,8 +397,6 @@ fn fill_bands(sums: &[[f32; 2]], radiance: &mut [f32]) {
 
 #[cfg(test)]
 mod tests {
-    use arsc_spectral::SampledSpectrum;
-
     use super::*;
 
     fn constant_film(resolution: [u32; 2], samples: u32, value: f32) -> Film {
@@ -376,6 +455,19 @@ mod tests {
         }
     }
 
+    /// Weights of filters with negative lobes cancel out of a constant picture.
+    #[test]
+    fn signed_weights_leave_constants_alone() {
+        let mut film = Film::new([1, 1], None, Bands::default(), false);
+        for i in 0..256 {
+            let wavelengths = SampledWavelengths::sample((f64::from(i) + 0.5) / 1024.0);
+            film.tiles[0].add(0, 0, &wavelengths, &SampledSpectrum::ONE, if i % 8 == 3 { -1.3 } else { 1.5 });
+        }
+        let (got, exact) = (film.to_image().xyz[0], constant_film([1, 1], 256, 1.0).to_image().xyz[0]);
+        // The wavelengths of a weight are not quite spread as all are.
+        assert!((got[1] / exact[1] - 1.0).abs() < 0.02, "{got:?} instead of {exact:?}");
+    }
+
     #[test]
     fn merging_is_adding() {
         let mut a = constant_film([1, 1], 8, 1.0);
@@ -412,7 +504,7 @@ mod tests {
         }
         assert_eq!(film.samples_per_pixel(), (1, 1));
         assert_eq!(Film::new([4, 4], Some([9, 9, 2, 2]), Bands::default(), false).paths(), 0);
-        assert_eq!(Film::bytes([40, 30], Some([5, 7, 39, 25]), &Bands::default(), false), 34 * 18 * 404 + 1200 * 200);
-        assert_eq!(Film::bytes([4, 4], Some([9, 9, 2, 2]), &Bands::default(), false), 16 * 200);
+        assert_eq!(Film::bytes([40, 30], Some([5, 7, 39, 25]), &Bands::default(), false), 34 * 18 * 468 + 1200 * 208);
+        assert_eq!(Film::bytes([4, 4], Some([9, 9, 2, 2]), &Bands::default(), false), 16 * 208);
     }
 }

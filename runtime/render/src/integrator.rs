@@ -18,6 +18,7 @@ use glam::DVec3;
 use crate::bsdf::Bsdf;
 use crate::frame::Frame;
 use crate::light::Origin;
+use crate::passes::CAMERA_PAIRS;
 use crate::polarisation::{Mueller, Polarisation, Stokes};
 use crate::sampler::Sampler;
 use crate::world::{LightSource, World};
@@ -27,8 +28,7 @@ pub(crate) const ROULETTE_DEPTH: u32 = 3;
 /// Largest probability that roulette lets a path go on: an albedo of one still ends.
 pub(crate) const ROULETTE_MAX: f32 = 0.99;
 
-/// Pairs of sample dimensions of the camera, then of each scattering event.
-pub(crate) const CAMERA_PAIRS: u32 = 2;
+/// Pairs of sample dimensions of each scattering event, after those of the camera.
 const EVENT_PAIRS: u32 = 4;
 const LIGHT_CHOICE: u32 = 0;
 const LIGHT_POINT: u32 = 1;

@@ -18,10 +18,11 @@ use glam::DVec3;
 
 use crate::bsdf::Bsdf;
 use crate::frame::Frame;
-use crate::integrator::{CAMERA_PAIRS, ROULETTE_DEPTH, ROULETTE_MAX};
+use crate::integrator::{ROULETTE_DEPTH, ROULETTE_MAX};
 use crate::interiors::FillingId;
 use crate::light::Origin;
 use crate::medium::Medium;
+use crate::passes::CAMERA_PAIRS;
 use crate::phase::PhaseFunction;
 use crate::polarisation::{Mueller, Polarisation, Stokes};
 use crate::sampler::Sampler;

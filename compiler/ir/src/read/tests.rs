@@ -1,7 +1,9 @@
 //! What is written reads back, and what has no form is refused where it has none.
 
 use super::*;
-use crate::{Builder, Environment, Light, Sky, SkyModel, verify};
+use crate::{
+    Across, Builder, Camera, Environment, Filter, FisheyeMapping, Focus, Lens, Light, Projection, Sky, SkyModel, verify,
+};
 use arsc_geometry::DAffine3;
 use arsc_spectral::{Channels, PhotometricWeb};
 use proptest::prelude::*;
@@ -167,7 +169,11 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
             absorption: tables.1.clone(),
             thickness: tables.2,
         });
-        b.emitter(Emitter { radiance: tables.1, two_sided: numbers[0] % 2 == 0, thermal: numbers[1] % 2 == 0 });
+        b.emitter(Emitter {
+            radiance: tables.1,
+            two_sided: numbers[0].is_multiple_of(2),
+            thermal: numbers[1].is_multiple_of(2),
+        });
         for (i, recipe) in recipes.into_iter().enumerate() {
             let origin = Span { source: SourceId(i as u32), start: numbers[1] / 2, end: u32::MAX };
             let id = |of: usize| NodeId((of % i.max(1)) as u32);
@@ -221,27 +227,29 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
             b.push(kind, origin);
         }
         let last = NodeId(b.len() as u32 - 1);
-        b.camera(Camera {
-            projection: Projection::Perspective { fov: tables.2 },
-            eye: DVec3::X,
-            target: DVec3::new(tables.2, -0.0, 1e-9),
-            up: DVec3::Z,
-            resolution: [numbers[0], numbers[1]],
-            filter: Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 },
-        });
+        b.camera(some_camera(tables.2, numbers[0], numbers[1]));
         let at = Span::new(SourceId(0), 3, 9);
         let wavelengths = WavelengthRange::new(300.0, 777.5).unwrap();
         let (band_nm, observer) = (tables.2, Observer::Cie2015Deg10);
-        let trace = PathTrace {
+        let sampling = Sampling {
             samples: numbers[2],
-            max_depth: 3,
             seed: u64::MAX,
+            sampler: Sampler::ALL[numbers[0] as usize % 3],
+            noise: (numbers[1].is_multiple_of(2)).then_some(tables.2),
+            time_limit: (numbers[1].is_multiple_of(3)).then_some(tables.2),
+        };
+        let trace = PathTrace {
+            sampling,
+            max_depth: 3,
             wavelengths,
             band_nm,
             observer,
             polarised: true,
+            features: numbers[0].is_multiple_of(2),
         };
         b.action(Action::PathTrace(trace), at);
+        b.action(Action::AmbientOcclusion { distance: f64::INFINITY, sampling: Sampling::of(3) }, at);
+        b.action(Action::Preview { sampling, features: numbers[1].is_multiple_of(2) }, at);
         b.action(Action::ToneMap { tone: tone(tables.2), slice_nm: None }, at);
         b.action(Action::WritePng { path: "a \"quoted\\\" \u{1} path.png".to_owned(), sixteen_bit: true }, at);
         b.finish(last)
@@ -272,6 +280,34 @@ impl Contents for Files {
 
     fn image(&self, _path: &str) -> Option<Arc<Raster>> {
         Some(pixel())
+    }
+}
+
+/// A camera of any kind, with and without what may be left out.
+fn some_camera(x: f64, kind: u32, resolution: u32) -> Camera {
+    let across = Across::ALL[kind as usize / 8 % 4];
+    let focus = [Focus::Distance(x), Focus::Point(DVec3::splat(x)), Focus::Target][kind as usize % 3];
+    let lens = Lens { radius: x, blades: kind, rotation: -x, focus };
+    let mapping = FisheyeMapping::ALL[kind as usize / 32 % 2];
+    let filters = [Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: x }, Filter::Lanczos { radius: x }];
+    let all = (kind / 64).is_multiple_of(2);
+    Camera {
+        projection: match kind % 5 {
+            0 => Projection::Perspective { fov: x, across },
+            1 => Projection::ThinLens { fov: x, across, lens },
+            2 => Projection::Orthographic { extent: x, across },
+            3 => Projection::Fisheye { mapping, fov: x, across },
+            _ => Projection::Panorama,
+        },
+        eye: DVec3::X,
+        target: all.then_some(DVec3::new(x, -0.0, 1e-9)),
+        up: DVec3::Z,
+        twist: if all { x } else { 0.0 },
+        fit: all.then_some(x),
+        resolution: [kind, resolution],
+        pixel_aspect: if all { x } else { 1.0 },
+        crop: all.then_some([0.0, x, 0.5, 1.0]),
+        filter: filters[kind as usize % 2],
     }
 }
 

@@ -75,6 +75,7 @@ pub(super) fn lint(survey: &Survey, findings: &mut Vec<Diagnostic>) {
         proof: Proof { ir, visits: VISITS },
     };
     if let Some(camera) = &ir.camera
+        && camera.fit.is_none()
         && let Some(id) = opaque.holder(camera.eye)
     {
         findings.push(

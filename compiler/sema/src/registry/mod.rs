@@ -6,6 +6,7 @@
 mod actions;
 mod cameras;
 mod csg;
+mod filters;
 mod image_actions;
 mod lights;
 mod lists;
@@ -153,7 +154,7 @@ impl Registry {
     }
 
     fn build() -> Registry {
-        let families: [(&'static str, Family); 16] = [
+        let families: [(&'static str, Family); 17] = [
             ("Solids", solids::builtins),
             ("Surfaces", surfaces::builtins),
             ("Boolean operations", csg::builtins),
@@ -163,6 +164,7 @@ impl Registry {
             ("Spectra", spectra::builtins),
             ("Lights and environments", lights::builtins),
             ("Cameras", cameras::builtins),
+            ("Reconstruction filters", filters::builtins),
             ("Actions", actions::builtins),
             ("Lists", lists::builtins),
             ("Numbers", math::builtins),
@@ -205,6 +207,7 @@ impl Registry {
             "std.spectra" => "Spectra",
             "std.light" => "Lights and environments",
             "std.solid" => "Solids",
+            "std.cameras" => "Cameras",
             "std.action" => "Actions",
             "std.texture" => "Textures",
             _ => return None,
@@ -261,9 +264,27 @@ pub fn choices(ty: &Type) -> &'static [(&'static str, Value)] {
         (SkyModel::HosekWilkie.name(), Value::SkyModel(SkyModel::HosekWilkie)),
         (SkyModel::Preetham.name(), Value::SkyModel(SkyModel::Preetham)),
     ];
-    use arsc_ir::{Distribution, Exposure, Observer, SkyModel, Strategy};
+    const ACROSS: [(&str, Value); Across::ALL.len()] = [
+        (Across::Shorter.name(), Value::Across(Across::Shorter)),
+        (Across::Horizontal.name(), Value::Across(Across::Horizontal)),
+        (Across::Vertical.name(), Value::Across(Across::Vertical)),
+        (Across::Diagonal.name(), Value::Across(Across::Diagonal)),
+    ];
+    const MAPPINGS: [(&str, Value); FisheyeMapping::ALL.len()] = [
+        (FisheyeMapping::Equidistant.name(), Value::FisheyeMapping(FisheyeMapping::Equidistant)),
+        (FisheyeMapping::EqualArea.name(), Value::FisheyeMapping(FisheyeMapping::EqualArea)),
+    ];
+    const SAMPLERS: [(&str, Value); Sampler::ALL.len()] = [
+        (Sampler::Sobol.name(), Value::Sampler(Sampler::Sobol)),
+        (Sampler::Halton.name(), Value::Sampler(Sampler::Halton)),
+        (Sampler::Independent.name(), Value::Sampler(Sampler::Independent)),
+    ];
+    use arsc_ir::{Across, Distribution, Exposure, FisheyeMapping, Observer, Sampler, SkyModel, Strategy};
     match ty {
         Type::Exposure => &[("auto", Value::Exposure(Exposure::Auto))],
+        Type::Across => &ACROSS,
+        Type::FisheyeMapping => &MAPPINGS,
+        Type::Sampler => &SAMPLERS,
         Type::Observer => &OBSERVERS,
         Type::Strategy => &STRATEGIES,
         Type::Distribution => &DISTRIBUTIONS,

@@ -26,6 +26,8 @@ pub enum Constraint {
     Within(f64, f64),
     /// Angles, both ends excluded, in degrees.
     DegreesBetween(f64, f64),
+    /// Angles above 0, the end in degrees included.
+    DegreesUpTo(f64),
     /// Angles from 0, the end in degrees excluded.
     DegreesBelow(f64),
 }
@@ -39,6 +41,7 @@ impl Constraint {
             Constraint::NonNegative => x >= 0.0,
             Constraint::Within(low, high) => x >= low && x <= high,
             Constraint::DegreesBetween(low, high) => x > low.to_radians() && x < high.to_radians(),
+            Constraint::DegreesUpTo(high) => x > 0.0 && x <= high.to_radians(),
             Constraint::DegreesBelow(high) => x >= 0.0 && x < high.to_radians(),
         };
         let all_hold = match value {
@@ -60,6 +63,7 @@ impl Constraint {
             Constraint::NonNegative => "at least 0".into(),
             Constraint::Within(low, high) => format!("from {low} to {high}"),
             Constraint::DegreesBetween(low, high) => format!("between {low}deg and {high}deg"),
+            Constraint::DegreesUpTo(high) => format!("more than 0deg and at most {high}deg"),
             Constraint::DegreesBelow(high) => format!("at least 0deg and less than {high}deg"),
         }
     }
@@ -127,6 +131,11 @@ impl Param {
 
     pub fn degrees_between(mut self, low: f64, high: f64) -> Param {
         self.constraint = Constraint::DegreesBetween(low, high);
+        self
+    }
+
+    pub fn degrees_up_to(mut self, high: f64) -> Param {
+        self.constraint = Constraint::DegreesUpTo(high);
         self
     }
 

@@ -34,8 +34,8 @@ impl Host for ProcessorClock {
         self.0.say(line);
     }
 
-    fn begin(&self, paths: u64) -> Box<dyn arsc_render::Progress + '_> {
-        self.0.begin(paths)
+    fn begin(&self, paths: u64, time_limit: Option<f64>) -> Box<dyn arsc_render::Progress + '_> {
+        self.0.begin(paths, time_limit)
     }
 
     fn seconds(&self) -> f64 {
