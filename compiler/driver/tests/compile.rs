@@ -140,3 +140,31 @@ fn texts_beyond_the_limit_are_not_read() {
     assert_eq!(ids(&compiled), [("E0005", "")]);
     assert!(compiled.ir.is_none());
 }
+
+/// A Donaldson matrix: the diagonal is the reflectance, the rest re-radiates.
+#[test]
+fn matrices_of_reradiation_are_read_from_files() {
+    let script = r#"
+        import std.material { fluorescent }
+        scene { sphere() |> with(fluorescent(tabulated_reradiation("paint.csv"))) }
+    "#;
+    let table = "nm,400,450,500\n400,0.25,0.2,0.1\n450,0,0.5,0.125\n";
+    let compiled = compile(script, &[("paint.csv", table)]);
+    let ir = compiled.ir.expect("it compiles");
+    let arsc_ir::Bsdf::Fluorescent { reradiation, .. } = &ir.bsdfs[0] else { panic!("{:?}", ir.bsdfs) };
+    assert_eq!([400.0, 425.0, 450.0].map(|nm| reradiation.reflectance.eval(nm)), [0.25, 0.375, 0.5]);
+    assert_eq!(reradiation.fluorescence.density(400.0, 500.0), 0.1 / 50.0);
+    assert_eq!(reradiation.fluorescence.density(450.0, 500.0), 0.125 / 50.0);
+    assert_eq!(reradiation.fluorescence.density(450.0, 450.0), 0.0);
+    for (table, part) in [
+        ("nm,400,450,510\n400,0.25,0.2,0.1\n450,0,0.5,0.125\n", "equal steps"),
+        ("nm,400,blue\n400,0.25,0.2\n", "`blue` is no wavelength"),
+        ("nm,410,460\n400,0.25,0.2\n450,0,0.2\n", "the reflectance is not known"),
+        ("nm,400,450\n400,0.25,-0.2\n450,0,0.2\n", "must not be negative"),
+        ("nm,400,450\n400,0.25,1.2\n450,0,0.2\n", "photons of one at 400nm"),
+    ] {
+        let compiled = compile(script, &[("paint.csv", table)]);
+        let message = &compiled.diagnostics[0].message;
+        assert!(message.contains(part), "{table:?}: {message}");
+    }
+}

@@ -42,7 +42,7 @@ pub use verify::{Violation, verify};
 
 pub use arsc_geometry::{Aabb, Shape};
 pub use arsc_spectral::tone::{Exposure, ToneMap};
-pub use arsc_spectral::{Observer, Spectrum, WavelengthRange};
+pub use arsc_spectral::{DonaldsonMatrix, Dye, Fluorescence, Observer, Reradiation, Spectrum, WavelengthRange};
 pub use arsc_texture::{Expression, ImageMap};
 
 /// A scene with its camera and its action sequence.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use arsc_spectral::{MerlBrdf, Spectrum};
+use arsc_spectral::{MerlBrdf, Reradiation, Spectrum};
 
 use crate::Varying;
 
@@ -110,6 +110,11 @@ pub enum Bsdf {
         base: Arc<Bsdf>,
         absorption: Spectrum,
         thickness: f64,
+    },
+    /// Diffuse, with light that changes its wavelength; `sigma` as in `OrenNayar`, 0 for Lambert's law.
+    Fluorescent {
+        reradiation: Reradiation,
+        sigma: f64,
     },
 }
 

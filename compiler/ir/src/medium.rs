@@ -1,7 +1,7 @@
 //! Participating media: what fills solids and the space around them.
 
 use arsc_geometry::DVec3;
-use arsc_spectral::Spectrum;
+use arsc_spectral::{Dye, Spectrum};
 
 /// A medium at density 1, and how dense it is where.
 ///
@@ -12,6 +12,8 @@ pub struct Medium {
     pub absorption: Spectrum,
     pub scattering: Spectrum,
     pub emission: Spectrum,
+    /// Their absorption, per metre, comes on top; what they emit goes into all directions alike.
+    pub dyes: Vec<Dye>,
     pub phase: PhaseFunction,
     pub density: Density,
 }

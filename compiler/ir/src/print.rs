@@ -21,7 +21,7 @@ use std::fmt::{self, Display, Formatter, Write};
 
 use arsc_diagnostics::Span;
 use arsc_geometry::DVec3;
-use arsc_spectral::Spectrum;
+use arsc_spectral::{DonaldsonMatrix, Dye, Fluorescence, Spectrum};
 
 use crate::image_action::print_tone_map;
 use crate::shape_text::open_shape;
@@ -163,6 +163,11 @@ impl Display for Text<'_, Bsdf> {
             Bsdf::Depolariser { transmittance } => {
                 Call::new(f, "depolariser")?.arg("transmittance", Text(transmittance))?.end()
             }
+            Bsdf::Fluorescent { reradiation, sigma } => Call::new(f, "fluorescent")?
+                .arg("reflectance", Text(&reradiation.reflectance))?
+                .arg("fluorescence", Text(&reradiation.fluorescence))?
+                .float("sigma", *sigma)?
+                .end(),
         }
     }
 }
@@ -179,16 +184,51 @@ impl Display for Text<'_, Emitter> {
     }
 }
 
+impl Display for Text<'_, Dye> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Dye { absorption, emission, quantum_yield } = self.0;
+        let call = Call::new(f, "dye")?.arg("absorption", Text(absorption))?.arg("emission", Text(emission))?;
+        call.float("quantum_yield", *quantum_yield)?.end()
+    }
+}
+
+impl Display for Text<'_, Fluorescence> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Fluorescence::Dye(dye) => write!(f, "{}", Text(dye)),
+            Fluorescence::Matrix(DonaldsonMatrix { excitation_nm, emission_nm, columns, entries }) => {
+                Call::new(f, "matrix")?
+                    .arg("excitation_nm", Floats(excitation_nm))?
+                    .arg("emission_nm", Floats(emission_nm))?
+                    .arg("columns", columns)?
+                    .arg("entries", Floats(entries))?
+                    .end()
+            }
+        }
+    }
+}
+
+impl Display for Text<'_, Vec<Dye>> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_char('[')?;
+        for (i, dye) in self.0.iter().enumerate() {
+            write!(f, "{}{}", if i > 0 { ", " } else { "" }, Text(dye))?;
+        }
+        f.write_char(']')
+    }
+}
+
 impl Display for Text<'_, Medium> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let Medium { absorption, scattering, emission, phase, density } = self.0;
-        Call::new(f, "medium")?
+        let Medium { absorption, scattering, emission, dyes, phase, density } = self.0;
+        let mut call = Call::new(f, "medium")?
             .arg("absorption", Text(absorption))?
             .arg("scattering", Text(scattering))?
-            .arg("emission", Text(emission))?
-            .arg("phase", Text(phase))?
-            .arg("density", Text(density))?
-            .end()
+            .arg("emission", Text(emission))?;
+        if !dyes.is_empty() {
+            call = call.arg("dyes", Text(dyes))?;
+        }
+        call.arg("phase", Text(phase))?.arg("density", Text(density))?.end()
     }
 }
 

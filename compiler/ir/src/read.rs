@@ -8,7 +8,9 @@ use std::sync::Arc;
 
 use arsc_diagnostics::{SourceId, Span};
 use arsc_geometry::{ClosedMesh, DVec3, Shape, TriangleMesh};
-use arsc_spectral::{MerlBrdf, Observer, Raster, Spectrum, WavelengthRange};
+use arsc_spectral::{
+    DonaldsonMatrix, Dye, Fluorescence, MerlBrdf, Observer, Raster, Reradiation, Spectrum, WavelengthRange,
+};
 
 use crate::args::{Args, float, float_list, floats, index, integer, named};
 use crate::camera_text::read_camera;
@@ -250,6 +252,11 @@ pub(crate) fn bsdf(term: Term, contents: &dyn Contents) -> Result<Bsdf, Fault> {
             Bsdf::Measured { path, brdf }
         }
         "depolariser" => Bsdf::Depolariser { transmittance: spectrum(args.take("transmittance")?)? },
+        "fluorescent" => {
+            let reflectance = spectrum(args.take("reflectance")?)?;
+            let fluorescence = fluorescence(args.take("fluorescence")?)?;
+            Bsdf::Fluorescent { reradiation: Reradiation { reflectance, fluorescence }, sigma: args.float("sigma")? }
+        }
         _ => return args.unknown("bsdf"),
     };
     args.end()?;
@@ -262,6 +269,40 @@ fn facets(args: &mut Args) -> Result<Facets, Fault> {
     let TermKind::Word(name) = term.kind else { return Err((term.offset, "expected a distribution".to_owned())) };
     let distribution = named(name).ok_or_else(|| (term.offset, format!("`{name}` is no distribution")))?;
     Ok(Facets { distribution, alpha: floats(&args.take("alpha")?)? })
+}
+
+fn fluorescence(term: Term) -> Result<Fluorescence, Fault> {
+    let mut args = Args::new(term)?;
+    let fluorescence = match args.name {
+        "dye" => Fluorescence::Dye(dye(&mut args)?),
+        "matrix" => Fluorescence::Matrix(DonaldsonMatrix {
+            excitation_nm: floats(&args.take("excitation_nm")?)?,
+            emission_nm: floats(&args.take("emission_nm")?)?,
+            columns: args.integer("columns")?,
+            entries: float_list(&args.take("entries")?)?.into(),
+        }),
+        _ => return args.unknown("fluorescence"),
+    };
+    args.end()?;
+    Ok(fluorescence)
+}
+
+fn dye(args: &mut Args) -> Result<Dye, Fault> {
+    let (absorption, emission) = (spectrum(args.take("absorption")?)?, spectrum(args.take("emission")?)?);
+    Ok(Dye { absorption, emission, quantum_yield: args.float("quantum_yield")? })
+}
+
+/// `[dye(…), …]`
+fn dyes(term: Term) -> Result<Vec<Dye>, Fault> {
+    let TermKind::List(items) = term.kind else { return Err((term.offset, "expected a list of dyes".to_owned())) };
+    let one = |term: Term| {
+        let offset = term.offset;
+        match fluorescence(term)? {
+            Fluorescence::Dye(dye) => Ok(dye),
+            Fluorescence::Matrix(_) => Err((offset, "a medium has dyes only".to_owned())),
+        }
+    };
+    items.into_iter().map(one).collect()
 }
 
 fn emitter(term: Term) -> Result<Emitter, Fault> {
@@ -286,6 +327,7 @@ fn medium(term: Term) -> Result<Medium, Fault> {
         absorption: spectrum(args.take("absorption")?)?,
         scattering: spectrum(args.take("scattering")?)?,
         emission: spectrum(args.take("emission")?)?,
+        dyes: args.optional("dyes").map_or(Ok(Vec::new()), dyes)?,
         phase: phase_function(args.take("phase")?)?,
         density: density(args.take("density")?)?,
     };

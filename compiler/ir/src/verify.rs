@@ -11,8 +11,8 @@ use arsc_spectral::Spectrum;
 
 use crate::image_action::is_valid_tone_map;
 use crate::{
-    Action, Attributes, Bsdf, Camera, CutRule, Density, Environment, Facets, Focus, Ir, Leaf, Light, Material,
-    MaterialId, Medium, NodeId, NodeKind, Parameter, PhaseFunction, Projection, Surface, Varying,
+    Action, Attributes, Bsdf, Camera, CutRule, Density, Dye, Environment, Facets, Fluorescence, Focus, Ir, Leaf, Light,
+    Material, MaterialId, Medium, NodeId, NodeKind, Parameter, PhaseFunction, Projection, Surface, Varying,
 };
 
 /// Spectra nest at most this deep, so that everybody may recurse into them.
@@ -258,6 +258,11 @@ fn check_bsdf(bsdf: &Bsdf) -> Check {
             require(*thickness >= 0.0 && thickness.is_finite(), "a thickness is negative or not finite")?;
             check_bsdf(coat).and_then(|()| check_bsdf(base)).and_then(|()| check_spectrum(absorption))
         }
+        Bsdf::Fluorescent { reradiation, sigma } => {
+            require(*sigma >= 0.0 && sigma.is_finite(), "sigma is negative or not finite")?;
+            check_spectrum(&reradiation.reflectance)?;
+            check_fluorescence(&reradiation.fluorescence)
+        }
     }
 }
 
@@ -290,10 +295,31 @@ fn check_varying(varying: &Varying) -> Check {
     Ok(())
 }
 
+fn check_fluorescence(fluorescence: &Fluorescence) -> Check {
+    match fluorescence {
+        Fluorescence::Dye(dye) => check_dye(dye),
+        Fluorescence::Matrix(matrix) => {
+            let regular = |[start, step]: [f64; 2]| positive(start) && positive(step);
+            let wavelengths = regular(matrix.excitation_nm) && regular(matrix.emission_nm);
+            require(wavelengths, "a wavelength of a matrix is not positive and finite")?;
+            let whole = matrix.columns > 0 && matrix.rows() > 0 && matrix.entries.len() % matrix.columns == 0;
+            require(whole, "a matrix has rows of unlike length")?;
+            require(matrix.entries.iter().all(|x| *x >= 0.0 && x.is_finite()), "a matrix is negative or not finite")
+        }
+    }
+}
+
+fn check_dye(dye: &Dye) -> Check {
+    require((0.0..=1.0).contains(&dye.quantum_yield), "a quantum yield is not in 0..=1")?;
+    check_spectrum(&dye.absorption)?;
+    check_spectrum(&dye.emission)
+}
+
 fn check_medium(medium: &Medium) -> Check {
     check_spectrum(&medium.absorption)?;
     check_spectrum(&medium.scattering)?;
     check_spectrum(&medium.emission)?;
+    medium.dyes.iter().try_for_each(check_dye)?;
     match medium.phase {
         PhaseFunction::Isotropic => {}
         PhaseFunction::HenyeyGreenstein { g } => require(g.abs() < 1.0, "the mean cosine is not in (-1, 1)")?,

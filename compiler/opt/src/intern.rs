@@ -130,6 +130,10 @@ impl Structural for Bsdf {
                 varying.parts.iter().for_each(|part| part.bsdf.structural_hash(hasher));
                 hash_all(&varying.texture_from_object.to_cols_array(), hasher);
             }
+            Bsdf::Fluorescent { reradiation, sigma } => {
+                reradiation.reflectance.structural_hash(hasher);
+                hash_f64(*sigma, hasher);
+            }
         }
     }
 }

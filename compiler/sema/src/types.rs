@@ -109,6 +109,10 @@ pub enum Type {
     /// `cut_with(…)`, `inherit()` as attributes.
     Attributes,
     Medium,
+    /// What a fluorescent surface gives back.
+    Reradiation,
+    /// A fluorescent substance in a medium.
+    Dye,
     PhaseFunction,
     Density,
     /// A value that varies over a surface.
@@ -260,10 +264,12 @@ pub const NAMED: &[(&str, Type)] = &[
     ("refractive_index", Type::Spectrum(SpectrumKind::RefractiveIndex)),
     ("extinction", Type::Spectrum(SpectrumKind::Extinction)),
     ("coefficient", Type::Spectrum(SpectrumKind::Coefficient)),
+    ("reradiation", Type::Reradiation),
     ("bsdf", Type::Bsdf),
     ("emitter", Type::Emitter),
     ("attributes", Type::Attributes),
     ("medium", Type::Medium),
+    ("dye", Type::Dye),
     ("phase_function", Type::PhaseFunction),
     ("density", Type::Density),
     ("texture", Type::Texture(TextureKind::Float)),

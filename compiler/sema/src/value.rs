@@ -8,8 +8,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 
 use arsc_ir::{
-    Across, Action, ActionAt, Attributes, Camera, Density, Distribution, Exposure, Filter, FisheyeMapping, NodeId,
-    Observer, PhaseFunction, Sampler, SkyModel, Spectrum, Strategy,
+    Across, Action, ActionAt, Attributes, Camera, Density, Distribution, Dye, Exposure, Filter, FisheyeMapping, NodeId,
+    Observer, PhaseFunction, Reradiation, Sampler, SkyModel, Spectrum, Strategy,
 };
 
 use crate::code::{Coercion, FnId};
@@ -41,6 +41,8 @@ pub enum Value {
     Attributes(Attributes),
     PhaseFunction(PhaseFunction),
     Density(Arc<Density>),
+    Reradiation(Arc<Reradiation>),
+    Dye(Arc<Dye>),
     Camera(Arc<Camera>),
     Filter(Arc<Filter>),
     Across(Across),
@@ -199,6 +201,20 @@ impl Value {
         match self {
             Value::Density(density) => density,
             other => bug("a density", other),
+        }
+    }
+
+    pub fn as_reradiation(&self) -> &Arc<Reradiation> {
+        match self {
+            Value::Reradiation(reradiation) => reradiation,
+            other => bug("a reradiation", other),
+        }
+    }
+
+    pub fn as_dye(&self) -> &Arc<Dye> {
+        match self {
+            Value::Dye(dye) => dye,
+            other => bug("a dye", other),
         }
     }
 

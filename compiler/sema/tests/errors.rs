@@ -250,10 +250,15 @@ fn one_of_each_block() {
 
 #[test]
 fn not_implemented_is_said() {
-    let with = |bsdf: &str| format!("import std.material {{ phosphor }}\nscene {{ sphere() |> with({bsdf}) }}");
-    expect(&with("phosphor(0.5)"), &[("E0901", "phosphor(0.5)")]);
+    let with = |density: &str| {
+        let import = "import std.medium { medium, grid_density }";
+        format!("{import}\nscene {{ sphere() |> with(medium(1, density: {density})) }}")
+    };
+    let grid = "grid_density(\"a.raw\", (8, 8, 8), (0, 0, 0), (1, 1, 1))";
+    expect(&with(grid), &[("E0901", grid)]);
     // Arguments are checked all the same.
-    expect(&with("phosphor(\"a\")"), &[("E0102", "\"a\""), ("E0901", "phosphor(\"a\")")]);
+    let wrong = "grid_density(2, (8, 8, 8), (0, 0, 0), (1, 1, 1))";
+    expect(&with(wrong), &[("E0102", "2"), ("E0901", wrong)]);
 }
 
 #[test]

@@ -65,6 +65,7 @@ fn lower_bsdf(bsdf: &arsc_ir::Bsdf) -> Bsdf {
         arsc_ir::Bsdf::Polariser { transmittance, angle } => Bsdf::polariser(transmittance, *angle),
         arsc_ir::Bsdf::Retarder { retardance, angle } => Bsdf::retarder(*retardance, *angle),
         arsc_ir::Bsdf::Depolariser { transmittance } => Bsdf::depolariser(transmittance),
+        arsc_ir::Bsdf::Fluorescent { reradiation, sigma } => Bsdf::reradiating(reradiation, *sigma),
         arsc_ir::Bsdf::Inert => Bsdf::Inert,
         arsc_ir::Bsdf::Measured { brdf, .. } => Bsdf::measured(brdf.clone()),
         arsc_ir::Bsdf::Layered { coat, base, absorption, thickness } => {
@@ -140,7 +141,7 @@ fn lower_medium(medium: &arsc_ir::Medium) -> Medium {
         arsc_ir::Density::Gaussian { center, sigma } => Density::Gaussian { center, sigma },
         arsc_ir::Density::Exponential { ground, height } => Density::Exponential { ground, height },
     };
-    Medium::new(&medium.absorption, &medium.scattering, &medium.emission, phase, density)
+    Medium::new(&medium.absorption, &medium.scattering, &medium.emission, phase, density).with_dyes(&medium.dyes)
 }
 
 fn lower_facets(facets: &arsc_ir::Facets) -> Microfacets {

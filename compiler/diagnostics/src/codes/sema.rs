@@ -48,4 +48,5 @@ codes! {
     lint EMPTY_SCRIPT "W0113" empty_script: "a script declares nothing";
     lint MESH_ORIENTATION "W0114" mesh_orientation: "faces of a closed mesh are turned the wrong way";
     lint DEGENERATE_FACES "W0115" degenerate_faces: "faces of a mesh have no area";
+    lint ANTI_STOKES "W0116" anti_stokes: "a dye emits light of more energy than it absorbs";
 }

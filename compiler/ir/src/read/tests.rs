@@ -150,7 +150,9 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
         ];
         for (phase, density) in media {
             let (absorption, scattering) = (tables.0.clone(), tables.1.clone());
-            b.medium(Medium { absorption, scattering, emission: tables.0.clone(), phase, density });
+            let dye = Dye { absorption: absorption.clone(), emission: scattering.clone(), quantum_yield: tables.2 };
+            let dyes = vec![dye; numbers[0] as usize % 3];
+            b.medium(Medium { absorption, scattering, emission: tables.0.clone(), dyes, phase, density });
         }
         b.bsdf(Bsdf::Inert);
         let distribution = Distribution::ALL[numbers[1] as usize % 3];
@@ -169,6 +171,13 @@ fn any_ir() -> impl Strategy2<Value = Ir> {
             absorption: tables.1.clone(),
             thickness: tables.2,
         });
+        let dye = Dye { absorption: tables.0.clone(), emission: tables.1.clone(), quantum_yield: 0.5 };
+        let (excitation_nm, emission_nm) = ([400.0, 10.0], [tables.2, 5.0]);
+        let matrix = DonaldsonMatrix { excitation_nm, emission_nm, columns: 2, entries: [0.0, tables.2].into() };
+        for fluorescence in [Fluorescence::Dye(dye), Fluorescence::Matrix(matrix)] {
+            let reradiation = Reradiation { reflectance: tables.0.clone(), fluorescence };
+            b.bsdf(Bsdf::Fluorescent { reradiation, sigma: 0.25 });
+        }
         b.emitter(Emitter {
             radiance: tables.1,
             two_sided: numbers[0].is_multiple_of(2),

@@ -17,10 +17,10 @@ pub(super) const MATERIAL: &str = "std.material";
 pub fn builtins() -> Vec<Builtin> {
     let mut list = attaching();
     list.extend(bsdfs());
+    list.push(super::fluorescence::fluorescent());
     list.extend(super::surface_models::builtins());
     list.extend(super::mixtures::builtins());
     list.extend(super::mixtures::reliefs());
-    list.extend(not_yet());
     list
 }
 
@@ -240,13 +240,4 @@ fn bsdfs() -> Vec<Builtin> {
 /// The type of reflectances that may vary over the surface.
 pub(super) fn varying_reflectance() -> Type {
     Texture(TextureKind::Spectrum(Reflectance))
-}
-
-fn not_yet() -> Vec<Builtin> {
-    let of = |name, doc| Builtin::new(name, doc).module(MATERIAL);
-    vec![
-        of("phosphor", "A fluorescent surface.")
-            .param(Param::new("reflectance", Spectrum(Reflectance), "without re-radiation"))
-            .later(Type::Bsdf, "fluorescence"),
-    ]
 }

@@ -45,6 +45,10 @@ fn media() -> Vec<Builtin> {
                 Param::new("emission", Type::Spectrum(Emission), "radiance of an absorbing layer of great depth")
                     .default_value("constant_emission(0)", zero()),
             )
+            .param(
+                Param::new("dyes", Type::list(Type::Dye), "fluorescent substances in it")
+                    .default_value("[]", Value::list(Vec::new())),
+            )
             .runs(Type::Medium, |m, args, site| {
                 for (i, what) in [(0, "the absorption coefficient"), (1, "the scattering coefficient")] {
                     m.require_non_negative(&args[i], what, site, i)?;
@@ -54,6 +58,7 @@ fn media() -> Vec<Builtin> {
                     absorption: spectrum(0),
                     scattering: spectrum(1),
                     emission: spectrum(4),
+                    dyes: args[5].as_list().iter().map(|dye| dye.as_dye().as_ref().clone()).collect(),
                     phase: args[2].as_phase_function(),
                     density: args[3].as_density().as_ref().clone(),
                 });

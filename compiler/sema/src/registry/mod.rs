@@ -7,6 +7,7 @@ mod actions;
 mod cameras;
 mod csg;
 mod filters;
+mod fluorescence;
 mod image_actions;
 mod lights;
 mod lists;

@@ -13,6 +13,7 @@ pub fn builtins() -> Vec<Builtin> {
     let mut list = colours::builtins();
     list.extend(formulas::builtins());
     list.extend(samples::builtins());
+    list.extend(super::fluorescence::builtins());
     list
 }
 
