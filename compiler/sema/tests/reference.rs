@@ -62,3 +62,8 @@ fn examples_of_the_library_are_true() {
         read_bytes(&format!("docs/images/library/{name}"));
     }
 }
+
+#[test]
+fn examples_for_those_who_come_from_art_are_true() {
+    assert!(run_examples("docs/migrating-from-arm.md") >= 4);
+}
