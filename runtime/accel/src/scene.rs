@@ -410,6 +410,23 @@ impl Scene {
         }
     }
 
+    /// Colours of the corners of a mesh's triangle as the file has them, and their weights at a hit; `None` where there are
+    /// none.
+    pub fn vertex_colors(&self, hit: &Hit) -> Option<[([u8; 3], f64); 3]> {
+        let mesh = match self.parts[hit.part.0 as usize].kind {
+            PartKind::Leaf { solid, leaf } => match self.members[solid as usize].model.leaves[leaf as usize].shape() {
+                Shape::Mesh(mesh) => mesh.mesh(),
+                _ => return None,
+            },
+            PartKind::Surface { surface } => match &self.surfaces()[surface as usize] {
+                SurfaceModel::Triangles(triangles) => triangles.mesh()?,
+                SurfaceModel::Flat(_) => return None,
+            },
+        };
+        let p = self.object_from_world(hit.part).transform_point3(hit.p);
+        mesh.colors_at(hit.face as usize, p)
+    }
+
     /// The map to the object space of a part: of its shape or surface as it was before it was placed.
     pub fn object_from_world(&self, part: PartId) -> DAffine3 {
         match self.parts[part.0 as usize].kind {

@@ -337,6 +337,14 @@ impl Triangles {
         }))
     }
 
+    /// The mesh in its own space, if it is one.
+    pub fn mesh(&self) -> Option<&TriangleMesh> {
+        match &self.content {
+            Content::Mesh(mesh) => Some(mesh),
+            _ => None,
+        }
+    }
+
     pub fn object_from_world(&self) -> DAffine3 {
         let matrix3 = self.normal_map.transpose();
         DAffine3 { matrix3, translation: -(matrix3 * self.map.translation) }

@@ -75,6 +75,20 @@ impl TriangleMesh {
         (!self.uvs.is_empty()).then(|| self.triangles[triangle].map(uv))
     }
 
+    /// Colours of a triangle's corners with their weights at a point of its plane, which add up to 1; `None` when there
+    /// are none, or no area.
+    pub fn colors_at(&self, triangle: usize, p: DVec3) -> Option<[([u8; 3], f64); 3]> {
+        let colors = self.triangles[triangle].map(|vertex| self.colors.get(vertex as usize));
+        let [a, b, c] = self.corners(triangle);
+        let normal = (b - a).cross(c - a);
+        let area = normal.length_squared();
+        let share = |from: DVec3, to: DVec3| ((to - from).cross(p - from).dot(normal) / area).clamp(0.0, 1.0);
+        let (second, third) = (share(c, a), share(a, b));
+        let weights = [1.0 - second - third, second, third];
+        let [x, y, z] = [0, 1, 2].map(|i| colors[i].map(|color| (*color, weights[i])));
+        if area > 0.0 { Some([x?, y?, z?]) } else { None }
+    }
+
     /// Twice the area, along the normal.
     pub fn cross(&self, triangle: usize) -> DVec3 {
         let [a, b, c] = self.corners(triangle);
@@ -150,5 +164,32 @@ impl std::fmt::Debug for TriangleMesh {
     /// Counts: the content is too long to read.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "TriangleMesh({} vertices, {} triangles)", self.positions.len(), self.triangles.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At the corners and in the middle of an edge.
+    #[test]
+    fn colours_are_interpolated() {
+        let mesh = TriangleMesh {
+            positions: vec![[0.0; 3], [2.0, 0.0, 0.0], [0.0, 4.0, 0.0]],
+            colors: vec![[255, 0, 0], [0, 255, 0], [0, 0, 255]],
+            triangles: vec![[0, 1, 2]],
+            ..TriangleMesh::default()
+        };
+        for (p, wanted) in [
+            (DVec3::ZERO, [1.0, 0.0, 0.0]),
+            (DVec3::X * 2.0, [0.0, 1.0, 0.0]),
+            (DVec3::Y * 4.0, [0.0, 0.0, 1.0]),
+            (DVec3::new(1.0, 2.0, 0.0), [0.0, 0.5, 0.5]),
+        ] {
+            let found = mesh.colors_at(0, p).unwrap();
+            assert_eq!(found.map(|(_, weight)| weight), wanted);
+            assert_eq!(found[1].0, [0, 255, 0]);
+        }
+        assert!(TriangleMesh { colors: vec![], ..mesh }.colors_at(0, DVec3::ZERO).is_none());
     }
 }

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 use arsc_accel::{Hit, Scene};
-use arsc_spectral::{ColourBasis, DenseSpectrum, SampledSpectrum, SampledWavelengths};
+use arsc_spectral::{ColourBasis, DenseSpectrum, SampledSpectrum, SampledWavelengths, srgb};
 use arsc_texture::{Dual, Expression, ExpressionGraph, ImageMap, Inputs, Needs, Step, evaluate, evaluate_gradients};
 use glam::{DAffine3, DVec2, DVec3};
 
@@ -208,6 +208,9 @@ impl VaryingBsdf {
             inputs.p = map.transform_point3(hit.p);
             inputs.normal = (map.matrix3.inverse().transpose() * hit.ns).normalize_or(hit.ns);
         }
+        if self.needs.color {
+            inputs.color = vertex_color(geometry, hit);
+        }
         if self.needs.uv {
             inputs.uv = geometry.parametrize(hit).uv;
         }
@@ -252,6 +255,13 @@ impl VaryingBsdf {
         let last = self.parts.iter().rev().find(|part| weight(part) > 0.0);
         last.unwrap_or(&self.parts[0])
     }
+}
+
+/// Linear sRGB of the mesh's vertices, interpolated; white where there are none.
+fn vertex_color(geometry: &Scene, hit: &Hit) -> DVec3 {
+    let Some(corners) = geometry.vertex_colors(hit) else { return DVec3::ONE };
+    let linear = |color: [u8; 3]| DVec3::from_array(color.map(|c| srgb::decode(f64::from(c) / 255.0)));
+    corners.into_iter().map(|(color, weight)| linear(color) * weight).sum()
 }
 
 /// Change of the surface coordinates per length of a tangent. A difference: coordinates are smooth but for seams.

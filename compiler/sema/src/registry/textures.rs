@@ -57,6 +57,11 @@ fn sources() -> Vec<Builtin> {
         ),
         of("surface_uv", "The surface coordinates of the shape or the mesh; `uv` is it.")
             .runs(Of(Vec2), |m, _, _| Ok(Texture::inputs(m, &[Input::U, Input::V]))),
+        of(
+            "surface_color",
+            "The colour of a mesh's vertices, linear sRGB; white without. `vertex_color` is it: `rgb(c.x, c.y, c.z)`.",
+        )
+        .runs(Of(Vec3), |m, _, _| Ok(Texture::inputs(m, &[Input::Red, Input::Green, Input::Blue]))),
     ]
 }
 
