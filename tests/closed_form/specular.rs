@@ -50,7 +50,7 @@ fn glass() {
 fn dispersive_glass() {
     let ior = Spectrum::Cauchy { a: 1.5, b_um2: 0.03, c_um4: 0.0 };
     let angle: f64 = 0.6;
-    let image = reflection(Bsdf::dielectric(&ior), angle, 1024);
+    let image = reflection(Bsdf::dielectric(&ior), angle, 2048);
     for group in [0..8, 8..20, 20..47] {
         let lambda = |band: usize| 0.5 * (image.band_edges_nm[band] + image.band_edges_nm[band + 1]);
         let reflectance = |band: usize| fresnel::dielectric(angle.cos(), ior.eval(lambda(band))).0;

@@ -54,10 +54,16 @@ pub fn duration(text: &str) -> Result<f64, String> {
     while !rest.is_empty() {
         let digits = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
         let (number, behind) = rest.split_at(digits);
+        if number.is_empty() {
+            seconds = f64::NAN;
+            break;
+        }
+        let behind = behind.trim_start();
         let letters = behind.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(behind.len());
         let (unit, behind) = behind.split_at(letters);
         let factor = match unit {
-            "s" | "" => 1.0,
+            "s" => 1.0,
+            "" if behind.is_empty() => 1.0,
             "m" | "min" => 60.0,
             "h" => 3600.0,
             _ => f64::NAN,
@@ -112,7 +118,8 @@ mod tests {
     fn values_are_read_and_slips_refused() {
         let times = [("90", 90.0), ("1.5 min", 90.0), ("1h30m", 5400.0), ("2min 5s", 125.0)];
         let _ = times.map(|(text, seconds)| assert_eq!(duration(text), Ok(seconds), "{text}"));
-        let _ = ["", "0s", "-3s", "s", "3d", "1.2.3s", "inf"].map(|text| assert!(duration(text).is_err(), "{text}"));
+        let _ =
+            ["", "0s", "-3s", "s", "3d", "1 2", "1.2.3s", "inf"].map(|text| assert!(duration(text).is_err(), "{text}"));
         assert_eq!([noise("0.01"), noise("2 %")], [Ok(0.01), Ok(0.02)]);
         let _ = ["0", "-1%", "2", "NaN", "%"].map(|text| assert!(noise(text).is_err(), "{text}"));
         assert_eq!(resolution("640x480"), Ok([640, 480]));
